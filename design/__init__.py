@@ -1,0 +1,1 @@
+"""Regions, requirements and the synthesis of geometries that meet them."""

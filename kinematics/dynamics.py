@@ -1,0 +1,65 @@
+"""Inverse dynamics by d'Alembert's principle on the mechanism's own points.
+
+The rigid-body model of a mechanism is a list of particles and rotors, each moved either by the joints or by the pose;
+a rod's mass is split between its two ends, so that every mass belongs to one side. With Q_q and Q_x the inertia and
+weight forces on both sides, virtual work gives J_m^T (tau - Q_q) = Q_x.
+"""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+
+from kinematics.bodies import BodySet
+from kinematics.interpreter import evaluate
+from kinematics.linear import adjugate
+from kinematics.mechanism import Array, Build, Mechanism
+from kinematics.model import Model
+from kinematics.motion import derivatives_along
+
+GRAVITY = 9.80665  # m/s^2, along -e_z
+
+
+def inverse_dynamics(robot: Mechanism, payload: float, pose: Array, velocity: Array, acceleration: Array) -> Array:
+    """Joint torques (or forces) that make the platform follow a motion.
+
+    Args:
+        robot: its `bodies(...)` states the masses.
+        payload: mass at the tool [kg].
+        pose, velocity, acceleration: (..., n) the pose and its time derivatives.
+
+    Returns:
+        (..., m) torques [N m] or forces [N]; NaN out of reach.
+    """
+
+    def build(model: Model) -> Build:
+        rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration")]
+        return [model.pose, *rates], [_torques(robot, model, payload, rates)]
+
+    given = [np.asarray(v, dtype=float) for v in (pose, velocity, acceleration)]
+    program = robot.program(("inverse_dynamics", payload, robot.inertia), build)
+    return evaluate(program, *np.broadcast_arrays(*given))[0]
+
+
+def _torques(robot: Mechanism, model: Model, payload: float, rates: list[ca.SX]) -> ca.SX:
+    bodies = robot.bodies(model.pose, model.joints, model.g, payload)
+    joint_rates = [ca.SX.sym(name, model.joints.shape[0]) for name in ("joint_velocity", "joint_acceleration")]
+    on_joints = model.at_pose(_generalised_force(bodies.of_joints, model.joints, joint_rates))
+    along = derivatives_along(model.inverse, model.pose, rates)[1:]
+    on_joints = ca.substitute(on_joints, ca.vertcat(*joint_rates), ca.vertcat(*along))
+    on_pose = _generalised_force(bodies.of_pose, model.pose, rates)
+    # J_q^-T sits outside the solve, so that a limb near its reach does not spoil the others.
+    transposed, det = adjugate(model.j_x_at_pose.T)
+    return on_joints + model.j_q_at_pose * (transposed @ on_pose) / det
+
+
+def _generalised_force(bodies: BodySet, variable: ca.SX, rates: list[ca.SX]) -> ca.SX:
+    """Sum of J^T m (a - g) over the particles and of the rotors' inertia torques, on the variable."""
+    force = ca.SX(variable.shape[0], 1)
+    for mass, point in bodies.particles:
+        acceleration = derivatives_along(point, variable, rates)[2] + ca.vertcat(0, 0, GRAVITY)
+        force += ca.jacobian(point, variable).T @ (mass * acceleration)
+    for inertia, angle in bodies.rotors:
+        acceleration = derivatives_along(angle, variable, rates)[2]
+        force += ca.jacobian(angle, variable).T * (inertia * acceleration)
+    return force

@@ -1,0 +1,108 @@
+"""Geometry records: one frozen dataclass serves the prototype's numbers and the symbols of the model."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from dataclasses import Field, dataclass, field, fields, replace
+from types import SimpleNamespace
+from typing import Any, Self
+
+import casadi as ca
+import numpy as np
+
+from kinematics.errors import InvalidGeometry
+
+Vector = np.ndarray
+TURN = 2.0 * math.pi
+
+
+def length(default: float | tuple[float, ...], *, minimum: float | None = 0.0, doc: str) -> Any:
+    """A length in metres, greater than `minimum` (None: any sign)."""
+    return field(default=default, metadata={"dimension": "length", "minimum": minimum, "doc": doc})
+
+
+def angle(default: float | tuple[float, ...], *, doc: str) -> Any:
+    """An angle in radians."""
+    return field(default=default, metadata={"dimension": "angle", "minimum": None, "doc": doc})
+
+
+def screw_pitch(default: float | tuple[float, ...], *, doc: str) -> Any:
+    """A screw's pitch in metres per turn, of either hand; never zero."""
+    return field(default=default, metadata={"dimension": "length_per_turn", "minimum": None, "doc": doc})
+
+
+@dataclass(frozen=True)
+class GeometryRecord:
+    """Base of every mechanism's `Geometry`: a flat list of named numbers (or tuples of numbers).
+
+    Raises:
+        InvalidGeometry: a value is not finite, has the wrong number of items, or is not a possible length.
+    """
+
+    def __post_init__(self) -> None:
+        for f in fields(self):
+            given, wanted = getattr(self, f.name), _shape(f)
+            try:
+                array = np.asarray(given, dtype=float)
+            except (TypeError, ValueError):
+                raise self._invalid(f.name, given, "a number" if wanted == () else f"{wanted[0]} numbers") from None
+            if array.shape != wanted:
+                raise self._invalid(f.name, given, "a number" if wanted == () else f"{wanted[0]} numbers")
+            if not np.all(np.isfinite(array)):
+                raise self._invalid(f.name, given, "finite values")
+            minimum = f.metadata["minimum"]
+            if minimum is not None and np.any(array <= minimum):
+                raise self._invalid(f.name, given, f"a length > {minimum:g} m")
+            if f.metadata["dimension"] == "length_per_turn" and np.any(array == 0.0):
+                raise self._invalid(f.name, given, "a pitch other than 0 m/turn")
+            object.__setattr__(self, f.name, float(array) if wanted == () else tuple(array.tolist()))
+
+    @classmethod
+    def _invalid(cls, name: str, found: object, expected: str) -> InvalidGeometry:
+        return InvalidGeometry(cls.__qualname__.split(".")[0], name, found, expected)
+
+    @classmethod
+    def sizes(cls) -> dict[str, int]:
+        """How many numbers each field holds, in the order of `vector`."""
+        return {f.name: math.prod(_shape(f)) for f in fields(cls)}
+
+    @classmethod
+    def symbols(cls) -> tuple[ca.SX, SimpleNamespace]:
+        """The symbol vector (k,) and the same symbols under the fields' names."""
+        named = {name: ca.SX.sym(name, size) for name, size in cls.sizes().items()}
+        return ca.vertcat(*named.values()), SimpleNamespace(**named)
+
+    def vector(self) -> Vector:
+        """(k,) all numbers, in the order of `symbols`."""
+        return np.concatenate([np.atleast_1d(np.asarray(getattr(self, f.name), float)) for f in fields(self)])
+
+    @classmethod
+    def from_vector(cls, values: Vector) -> Self:
+        """Inverse of `vector`."""
+        items: dict[str, Any] = {}
+        start = 0
+        for f in fields(cls):
+            size = math.prod(_shape(f))
+            part = [float(v) for v in values[start : start + size]]
+            items[f.name] = part[0] if _shape(f) == () else tuple(part)
+            start += size
+        return cls(**items)
+
+    def with_values(self, **changes: Any) -> Self:
+        """A copy with some fields changed."""
+        return replace(self, **changes)
+
+    def as_dict(self) -> dict[str, float | list[float]]:
+        """Field names to plain numbers or lists, for files."""
+        return {f.name: list(v) if isinstance(v := getattr(self, f.name), tuple) else v for f in fields(self)}
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of the numbers, to tell which geometry a file was made for."""
+        return hashlib.sha256(json.dumps(self.as_dict(), sort_keys=True).encode()).hexdigest()
+
+
+def _shape(f: Field[Any]) -> tuple[int, ...]:
+    return (len(f.default),) if isinstance(f.default, tuple) else ()

@@ -1,0 +1,256 @@
+"""Heli4 (Krut, Company, Nabat, Pierrot, IROS 2006): four rotary drives, two plates, a screw that turns the tool.
+
+Limbs 1 and 2 carry the plate at the tool's height, limbs 3 and 4 the plate that rides on the screw. Equation numbers
+are the paper's; where it errs, the expression here follows from the closure and the documentation says so.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import ClassVar
+
+import casadi as ca
+import numpy as np
+
+from kinematics.bodies import Bodies
+from kinematics.errors import InvalidShape
+from kinematics.geometry import TURN, GeometryRecord, angle, length, screw_pitch
+from kinematics.heli4_forward import plates_of_root, quartic
+from kinematics.indices import FviBounds
+from kinematics.interpreter import evaluate
+from kinematics.mechanism import Array, Build
+from kinematics.model import Model
+from kinematics.polynomial import real_roots
+from kinematics.rods import RodLevel
+
+_UPPER = (0.0, 0.0, 1.0, 1.0)  # which limbs hold the plate that rides on the screw: (7), (8)
+_DEG = math.pi / 180.0
+_E_Z = ca.DM([0, 0, 1])
+
+
+@dataclass(frozen=True)
+class Heli4Geometry(GeometryRecord):
+    """Table 1 of the paper, in metres and radians."""
+
+    base_radius: float = length(0.350, doc="R, of the actuators' axes")
+    platform_radius: float = length(0.041, doc="r, of the plates")
+    arm_length: float = length(0.351, doc="L, actuator to rod")
+    rod_length: float = length(0.800, doc="l, rod")
+    height_step: float = length(0.0, minimum=None, doc="H, actuators 3 and 4 above 1 and 2")
+    plate_offset: float = length(0.041, minimum=None, doc="h, plates above the tool point")
+    pitch: float = screw_pitch(0.050, doc="p, of the screw")
+    azimuths: tuple[float, ...] = angle((0.0, 180 * _DEG, 90 * _DEG, 270 * _DEG), doc="alpha, of the limbs")
+    parallelogram_width: float = length(0.1, doc="d, between the two rods of a limb; not in the paper")
+
+
+@dataclass(frozen=True)
+class Heli4Inertia:
+    """A drive set of the Quattro's class: an assumption of this project, not a datasheet. SI units.
+
+    Attributes:
+        drive: inertia of drive and gear at the joint.
+        arm_mass, arm_centre, arm_factor: the arm's mass, its centre of mass c as a fraction of L, and its inertia about
+            the joint over m c^2.
+        rod_pair_mass: both rods of a limb, half at each end.
+        plate_masses: lower plate (limbs 1 and 2) and upper plate.
+        tool: inertia of the tool about e_z; the payload is a point on the lower plate.
+    """
+
+    drive: float = 0.045
+    arm_mass: float = 0.9
+    arm_centre: float = 0.40
+    arm_factor: float = 1.25
+    rod_pair_mass: float = 0.26
+    plate_masses: tuple[float, float] = (0.55, 0.55)
+    tool: float = 6e-4
+
+
+class Heli4(RodLevel):
+    """Pose [x, y, z, theta], joints q1..q4 measured from e_z."""
+
+    Geometry = Heli4Geometry
+    Inertia = Heli4Inertia
+    geometry: Heli4Geometry
+    inertia: Heli4Inertia
+    pose_names = ("x", "y", "z", "theta")
+    joint_names = ("q1", "q2", "q3", "q4")
+    rotations = (3,)
+    home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.7, 0.0)
+    fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=150.0)
+    rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta", "epsilon_1", "epsilon_2")
+    # (51): sums and differences of a limb's two rods; the plates' own rotations in place of the relative ones.
+    row_combinations = np.vstack([np.kron(np.eye(4), [0.5, 0.5]), np.kron(np.eye(4), [1.0, -1.0])])
+    column_combinations = np.eye(8)[[0, 1, 2, 4, 5, 3, 6, 7]] - np.outer([0] * 6 + [1, 1], np.eye(8)[3])
+
+    @property
+    def characteristic_length(self) -> float:
+        """p / (2 pi): the screw's lead turns a rotation into the travel between the plates [m]."""
+        return abs(self.geometry.pitch) / TURN
+
+    # Points.
+
+    @staticmethod
+    def directions(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """u_i (3, 4), radial (1), and e_z x u_i (3, 4), along the actuators' axes."""
+        c, s, zero = ca.cos(g.azimuths).T, ca.sin(g.azimuths).T, ca.SX(1, 4)
+        return ca.vertcat(c, s, zero), ca.vertcat(-s, c, zero)
+
+    @staticmethod
+    def actuator_points(g: SimpleNamespace) -> ca.SX:
+        """P_i (3, 4); (2), (3)."""
+        return g.base_radius * Heli4.directions(g)[0] + _heights(g.height_step * ca.DM(_UPPER))
+
+    @staticmethod
+    def arm_points(joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """A_i (3, 4), where the rods meet the arms; (4), (5)."""
+        radial, _ = Heli4.directions(g)
+        along = ca.mtimes(radial, ca.diag(ca.sin(joints))) + _heights(ca.cos(joints))
+        return Heli4.actuator_points(g) + g.arm_length * along
+
+    @staticmethod
+    def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """B_i (3, 4), where the rods meet the plates; (6)-(8), with p in metres per radian."""
+        upper = ca.DM(_UPPER)
+        heights = g.plate_offset + upper * (g.height_step + g.pitch / TURN * pose[3])
+        return ca.repmat(pose[:3], 1, 4) + g.platform_radius * Heli4.directions(g)[0] + _heights(heights)
+
+    # The closure and its closed forms.
+
+    @staticmethod
+    def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """Half of |A_i B_i|^2 - l^2; (9)."""
+        rods = Heli4.arm_points(joints, g) - Heli4.platform_points(pose, g)
+        return (ca.sum1(rods * rods).T - g.rod_length**2) / 2
+
+    @staticmethod
+    def _inverse_terms(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
+        """M_i, N_i, G_i of M cos q + N sin q = G, (10)-(12), and sqrt(M^2 + N^2 - G^2)."""
+        to_actuator = Heli4.actuator_points(g) - Heli4.platform_points(pose, g)
+        radial, _ = Heli4.directions(g)
+        m = 2 * g.arm_length * to_actuator[2, :].T
+        n = 2 * g.arm_length * ca.sum1(to_actuator * radial).T
+        right = g.rod_length**2 - ca.sum1(to_actuator * to_actuator).T - g.arm_length**2
+        return m, n, right, ca.sqrt(m * m + n * n - right * right)
+
+    @staticmethod
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """The elbow-out root; the sum of two angles does not jump where q passes pi, as (14) does."""
+        m, n, right, root = Heli4._inverse_terms(pose, g)
+        return ca.atan2(n, m) + ca.atan2(root, right)
+
+    @staticmethod
+    def joint_cosines_and_sines(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """Both from (10) and the root that is kept, without an angle."""
+        m, n, right, root = Heli4._inverse_terms(pose, g)
+        square = m * m + n * n
+        return (m * right - n * root) / square, (n * right + m * root) / square
+
+    @staticmethod
+    def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """How much longer or shorter each rod could be before B_i left the arm's circle [m]."""
+        to_actuator = Heli4.actuator_points(g) - Heli4.platform_points(pose, g)
+        radial, axis = Heli4.directions(g)
+        across = ca.sum1(to_actuator * axis).T
+        distance = ca.sqrt(ca.sum1(to_actuator * radial).T ** 2 + to_actuator[2, :].T ** 2)
+        nearest = ca.sqrt((distance - g.arm_length) ** 2 + across**2)
+        farthest = ca.sqrt((distance + g.arm_length) ** 2 + across**2)
+        return ca.fmin(g.rod_length - nearest, farthest - g.rod_length)
+
+    @staticmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """L l for each J_q,i; p l^4 for det J_x."""
+        return ca.repmat(g.arm_length * g.rod_length, 4, 1), ca.fabs(g.pitch / TURN) * g.rod_length**4
+
+    # The rods, one by one.
+
+    @staticmethod
+    def rod_closure(pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(8,) rods 11, 12, 21, ... 42; (47). The plates turn by theta + epsilon and the upper one climbs by -p epsilon_2.
+
+        The paper's (49), (53) and (54) print the opposite sign for p, against its own (6).
+        """
+        _, axis = Heli4.directions(g)
+        arms, platforms = Heli4.arm_points(joints, g), Heli4.platform_points(pose, g)
+        rods = []
+        for limb in range(4):
+            plate = ca.vertcat(displacement[3:5], displacement[5] + displacement[6 + limb // 2])
+            climb = -_UPPER[limb] * g.pitch / TURN * displacement[7]
+            for side in (-0.5, 0.5):
+                offset = side * g.parallelogram_width * axis[:, limb]
+                end = platforms[:, limb] + offset
+                moved = end + displacement[:3] + ca.cross(plate, end - pose[:3]) + climb * _E_Z
+                rods.append((ca.sumsqr(arms[:, limb] + offset - moved) - g.rod_length**2) / 2)
+        return ca.vertcat(*rods)
+
+    @classmethod
+    def internal_determinant_symbolic(cls) -> ca.SX:
+        """Expression (59) over d^4 l^4."""
+        model = cls.model()
+        rods = model.at_pose(cls.arm_points(model.joints, model.g) - cls.platform_points(model.pose, model.g))
+        _, axis = cls.directions(model.g)
+        normals = [ca.cross(axis[:, i], rods[:, i]) for i in range(4)]
+        lines = ca.cross(normals[0], normals[1]), ca.cross(normals[2], normals[3])
+        return ca.cross(*lines)[2] / model.g.rod_length**4
+
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+        """Arms with their drives and half of the rods; plates, payload, tool and the rods' other half."""
+        i, bodies = self.inertia, Bodies()
+        radial, _ = Heli4.directions(g)
+        rod_end, elbows = i.rod_pair_mass / 2, Heli4.arm_points(joints, g)
+        centre = i.arm_centre * g.arm_length
+        for limb in range(4):
+            swing = radial[:, limb] * ca.sin(joints[limb]) + _E_Z * ca.cos(joints[limb])
+            bodies.of_joints.particles.extend([(i.arm_mass, centre * swing), (rod_end, elbows[:, limb])])
+            own = (i.arm_factor - 1) * i.arm_mass * centre**2  # beyond the particle at the centre of mass
+            bodies.of_joints.rotors.append((i.drive + own, joints[limb]))
+        upper = pose[:3] + g.pitch / TURN * pose[3] * _E_Z
+        bodies.of_pose.particles.extend(
+            [(i.plate_masses[0] + payload + 2 * rod_end, pose[:3]), (i.plate_masses[1] + 2 * rod_end, upper)]
+        )
+        bodies.of_pose.rotors.append((i.tool, pose[3]))
+        return bodies
+
+    # The forward model.
+
+    @staticmethod
+    def _spheres(joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """s_i (3, 4) = B_i - A_i with both plates at the origin; (18) with h_i minus the actuator's own height."""
+        return Heli4.platform_points(ca.SX(4, 1), g) - Heli4.arm_points(joints, g)
+
+    def _roots(self, joints: Array) -> Array:
+        def build(model: Model) -> Build:
+            return [model.joints], [quartic(self._spheres(model.joints, model.g), model.g.rod_length)]
+
+        return real_roots(evaluate(self.program("quartic", build), joints)[0])
+
+    def _poses_of(self, joints: Array, roots: Array) -> Array:
+        """(..., 4) joints and (...,) roots -> (..., 4) poses."""
+
+        def build(model: Model) -> Build:
+            w = ca.SX.sym("w")
+            xy, lower, upper = plates_of_root(w, self._spheres(model.joints, model.g), model.g.rod_length)
+            return [w, model.joints], [ca.vertcat(xy, lower, (upper - lower) / (model.g.pitch / TURN))]
+
+        return evaluate(self.program("pose_of_root", build), roots[..., None], joints)[0]
+
+    def forward(self, joints: Array) -> Array:
+        """(..., 4) -> (..., 4): both pairs of limbs on the lower sheet, the quartic's smallest real root."""
+        joints = self._joints(joints)
+        return self._poses_of(joints, self._roots(joints)[..., 0])
+
+    def assembly_modes(self, joints: Array) -> Array:
+        """(4,) -> (k, 4), every real pose with these joints, at most four; the working one first."""
+        joints = self._joints(joints)
+        if joints.ndim != 1:
+            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        roots = self._roots(joints)
+        roots = roots[np.isfinite(roots)]
+        return self._poses_of(np.broadcast_to(joints, (roots.size, 4)), roots)
+
+
+def _heights(values: ca.SX) -> ca.SX:
+    """(3, 4) columns along e_z."""
+    row = values.T if values.shape[1] == 1 and values.shape[0] > 1 else ca.repmat(values, 1, 4)
+    return ca.vertcat(ca.SX(2, 4), row)

@@ -1,0 +1,68 @@
+"""Performance indices of any mechanism, built on its inverse Jacobian J_m (q' = J_m t).
+
+FVI, v_w and f_w are expressions (39) and (40) of Shayya et al.; J_mw = J_m W^-1 is the homogeneous Jacobian, in which
+a characteristic length turns rotations into lengths.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+from kinematics.linear import adjugate
+
+
+@dataclass(frozen=True)
+class FviBounds:
+    """What the actuators give and what is wanted of the worst direction.
+
+    Attributes:
+        joint_speed: q'_max of every actuator [rad/s or m/s].
+        joint_effort: tau_max of every actuator [N m or N].
+        speed: v_wl, the wanted lower bound of the worst isotropic speed [m/s].
+        force: f_wl, the wanted lower bound of the worst isotropic force [N].
+    """
+
+    joint_speed: float
+    joint_effort: float
+    speed: float
+    force: float
+
+
+def homogeneous(inverse_jacobian: ca.SX, rotations: tuple[int, ...], characteristic_length: float) -> ca.SX:
+    """J_mw = J_m W^-1: the columns of the rotations divided by the characteristic length [m]."""
+    result = ca.SX(inverse_jacobian)
+    for column in rotations:
+        result[:, column] = result[:, column] / characteristic_length
+    return result
+
+
+def isotropic_components(j_mw: ca.SX) -> tuple[ca.SX, ca.SX]:
+    """Isotropic speed and force that each actuator alone would allow, for unit joint speed and effort.
+
+    Their minima are v_w, the radius of the largest sphere in the polytope of velocities, and f_w, the same for forces
+    with the minimum-norm joint efforts (40). The pseudo-inverse goes through adjugates, so a singular pose gives f_w = 0
+    and not NaN.
+
+    Args:
+        j_mw: (m, n) homogeneous inverse Jacobian, m >= n.
+
+    Returns:
+        speeds (m,), forces (m,).
+    """
+    m, n = j_mw.shape
+    speeds = [1 / ca.norm_2(j_mw[i, :]) for i in range(m)]
+    if m == n:
+        columns, det = adjugate(j_mw)
+    else:
+        cofactors, det = adjugate(j_mw.T @ j_mw)
+        columns = cofactors @ j_mw.T
+    forces = [ca.fabs(det) / ca.norm_2(columns[:, i]) for i in range(m)]
+    return ca.vertcat(*speeds), ca.vertcat(*forces)
+
+
+def fvi_components(j_mw: ca.SX, bounds: FviBounds) -> ca.SX:
+    """(2 m,) speeds over v_wl, then forces over f_wl; the FVI (39) is the smallest of them."""
+    speeds, forces = isotropic_components(j_mw)
+    return ca.vertcat(speeds * (bounds.joint_speed / bounds.speed), forces * (bounds.joint_effort / bounds.force))

@@ -1,0 +1,251 @@
+"""A mechanism is its loop closure; this base derives the rest.
+
+A new mechanism is one file: a `Geometry`, the closure (one row a limb), the closed forms of its inverse and forward
+models, its reach margin and the scales that make its determinants dimensionless. Nothing else is typed in.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any, ClassVar
+
+import casadi as ca
+import numpy as np
+
+from kinematics.bodies import Bodies
+from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
+from kinematics.geometry import GeometryRecord
+from kinematics.indices import FviBounds, fvi_components, homogeneous, isotropic_components
+from kinematics.interpreter import bulk, evaluate
+from kinematics.linear import determinant
+from kinematics.model import Model, model_of
+from kinematics.program import Program
+
+Array = np.ndarray
+Build = tuple[list[ca.SX], list[ca.SX]]  # inputs and outputs of a program
+
+
+class Mechanism(ABC):
+    """A parallel mechanism with n freedoms and m actuated joints, one a limb.
+
+    Every public method takes poses (..., n) or joints (..., m) with any leading shape.
+    """
+
+    Geometry: ClassVar[type[GeometryRecord]]
+    Inertia: ClassVar[type]  # a frozen dataclass of masses, with defaults
+    pose_names: ClassVar[tuple[str, ...]]
+    joint_names: ClassVar[tuple[str, ...]]
+    rotations: ClassVar[tuple[int, ...]]  # which pose coordinates are angles
+    home: ClassVar[tuple[float, ...]]  # a pose well inside the workspace
+    fvi_bounds: ClassVar[FviBounds]
+    margins: ClassVar[tuple[str, ...]] = ("reach", "fvi", "J_q", "det_J_q", "det_J_x")
+
+    def __init__(self, geometry: GeometryRecord | None = None, inertia: Any = None) -> None:
+        self.geometry = geometry if geometry is not None else self.Geometry()
+        self.inertia = inertia if inertia is not None else self.Inertia()
+        self._programs: dict[object, Program] = {}
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.geometry})"
+
+    # What a mechanism writes, symbolically; `g` holds the geometry's fields by name.
+
+    @staticmethod
+    @abstractmethod
+    def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(m,) loop closure, one row a limb."""
+
+    @staticmethod
+    @abstractmethod
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(m,) joints of the working mode, NaN where a limb cannot reach."""
+
+    @staticmethod
+    @abstractmethod
+    def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(m,) how far each limb is from not reaching [m]; negative where it cannot."""
+
+    @staticmethod
+    @abstractmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """What J_q's diagonal (m,) and det J_x are divided by, so that both lie in [-1, 1]."""
+
+    @abstractmethod
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+        """The masses that the joints and the pose move; `payload` [kg] sits at the tool."""
+
+    @staticmethod
+    def joint_cosines_and_sines(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX] | None:  # noqa: ARG004
+        """(m,) cosines and (m,) sines of the joints at a pose, where the joints are revolute."""
+        return None
+
+    @staticmethod
+    def pose_rate_map(pose: ca.SX) -> ca.SX:
+        """(n, n) pose rates from the twist; the identity unless the pose holds Euler angles."""
+        return ca.SX.eye(pose.shape[0])
+
+    @property
+    @abstractmethod
+    def characteristic_length(self) -> float:
+        """What makes a rotation a length [m]."""
+
+    @abstractmethod
+    def assembly_modes(self, joints: Array) -> Array:
+        """(m,) -> (k, n), every real pose with these joints."""
+
+    @abstractmethod
+    def forward(self, joints: Array) -> Array:
+        """(..., m) -> (..., n), the working assembly mode; NaN where there is none."""
+
+    # What follows from it.
+
+    @classmethod
+    def model(cls) -> Model:
+        """The symbolic model, shared by all robots of this class."""
+        return model_of(cls)
+
+    def inverse(self, pose: Array) -> Array:
+        """(..., n) -> (..., m) joints of the working mode; a NaN row where a limb cannot reach."""
+        (joints,) = self._evaluate("inverse", lambda model: [model.inverse], pose)
+        joints[np.isnan(joints).any(axis=-1)] = np.nan
+        return joints
+
+    def closure_residual(self, pose: Array, joints: Array) -> Array:
+        """(..., n), (..., m) -> (..., m) the loop closure; zero when they belong together."""
+        pose, joints = self._poses(pose), self._joints(joints)
+        program = self.program("closure", lambda m: ([m.pose, m.joints], [m.closure]))
+        pose, joints = self._together(pose, joints)
+        return evaluate(program, pose, joints)[0]
+
+    def jacobians(self, pose: Array) -> tuple[Array, Array]:
+        """J_q (..., m, m) and J_x (..., m, n), with J_q q' = J_x t."""
+        diagonal, j_x = self._evaluate("jacobians", lambda model: [model.j_q_at_pose, model.j_x_at_pose], pose)
+        j_q = np.zeros((*diagonal.shape, diagonal.shape[-1]))
+        j_q[..., range(diagonal.shape[-1]), range(diagonal.shape[-1])] = diagonal
+        return j_q, j_x
+
+    def inverse_jacobian(self, pose: Array) -> Array:
+        """(..., m, n) J_m = J_q^-1 J_x, so that q' = J_m t."""
+        return self._evaluate("inverse_jacobian", lambda model: [model.inverse_jacobian], pose)[0]
+
+    def isotropic(self, pose: Array, characteristic_length: float | None = None) -> tuple[Array, Array]:
+        """v_w (...,) and f_w (...,): worst speed and force for unit joint speed and effort; Shayya et al. (40)."""
+        length = self._length(characteristic_length)
+        speeds, forces = self._evaluate(
+            ("isotropic", length), lambda model: isotropic_components(self._homogeneous(model, length)), pose
+        )
+        return speeds.min(axis=-1), forces.min(axis=-1)
+
+    def fvi(self, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None) -> Array:
+        """(...,) min(v_w / v_wl, f_w / f_wl); Shayya et al. (39). NaN where the pose is out of reach."""
+        return self.margin("fvi", pose, bounds, characteristic_length)
+
+    def condition_number(self, pose: Array, characteristic_length: float | None = None) -> Array:
+        """(...,) 2-norm condition number of J_mw; inf on a singularity, NaN out of reach."""
+        length = self._length(characteristic_length)
+        (j_mw,) = self._evaluate(("homogeneous", length), lambda model: [self._homogeneous(model, length)], pose)
+        good = np.isfinite(j_mw).all(axis=(-2, -1))
+        result = np.full(good.shape, np.nan)
+        result[good] = np.linalg.cond(j_mw[good])
+        return result
+
+    def margin(
+        self, name: str, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None
+    ) -> Array:
+        """(...,) a named margin, the larger the better: the smallest of its components at each pose.
+
+        reach [m]; fvi; J_q (the worst |J_q,i| over its scale), det_J_q, det_J_x (normalised, in [0, 1]), and what the
+        mechanism adds. NaN where the pose is out of reach (but for reach itself).
+        """
+        bounds = bounds or self.fvi_bounds
+        length = self._length(characteristic_length)
+        (values,) = self._evaluate(
+            (name, bounds, length), lambda _: [self.margin_components(name, bounds, length)], pose
+        )
+        return values.min(axis=-1)
+
+    def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
+        """A margin's components in the model's symbols `pose` and `geometry`, each to be at least the bound.
+
+        Raises:
+            InvalidValue: the mechanism has no such margin.
+        """
+        if name not in self.margins:
+            raise InvalidValue(f"{type(self).__name__} margin", name, f"one of {', '.join(self.margins)}")
+        model = self.model()
+        if name == "reach":
+            return self.reach(model.pose, model.g)
+        if name == "fvi":
+            return fvi_components(self._homogeneous(model, characteristic_length), bounds)
+        q_scale, x_scale = self.scales(model.g)
+        if name == "det_J_x":
+            return ca.fabs(determinant(model.j_x_at_pose)) / x_scale
+        normalised = ca.fabs(model.j_q_at_pose) / q_scale
+        if name == "J_q":
+            return normalised
+        result = ca.SX(1)
+        for i in range(normalised.shape[0]):
+            result *= normalised[i]
+        return result
+
+    def require_reachable(self, pose: Array) -> None:
+        """Check every pose.
+
+        Raises:
+            UnreachablePose: naming the worst pose, its limb (counted from 1) and margin [m].
+        """
+        pose = self._poses(pose)
+        (margins,) = self._evaluate("reach", lambda model: [self.reach(model.pose, model.g)], pose)
+        margins = np.where(np.isnan(margins), -np.inf, margins).reshape(-1, margins.shape[-1])
+        if margins.size and margins.min() < 0.0:
+            row, limb = np.unravel_index(int(margins.argmin()), margins.shape)
+            worst = pose.reshape(-1, pose.shape[-1])[row]
+            raise UnreachablePose(worst, int(limb) + 1, float(margins[row, limb]))
+
+    # Helpers.
+
+    def _homogeneous(self, model: Model, length: float) -> ca.SX:
+        return homogeneous(model.inverse_jacobian, self.rotations, length)
+
+    def _length(self, given: float | None) -> float:
+        length = self.characteristic_length if given is None else float(given)
+        if not np.isfinite(length) or length <= 0.0:
+            raise InvalidValue("characteristic_length", given, "a finite length > 0 m")
+        return length
+
+    def _evaluate(self, key: object, expressions: Callable[[Model], object], pose: Array) -> list[Array]:
+        pose = self._poses(pose)
+        return evaluate(self.program(key, lambda m: ([m.pose], list(expressions(m)))), pose)  # type: ignore[call-overload]
+
+    def program(self, key: object, build: Callable[[Model], Build]) -> Program:
+        """A program with this robot's numbers in place of the geometry's symbols; built at first use."""
+        if key not in self._programs:
+            model = self.model()
+            inputs, outputs = build(model)
+            with_symbols = ca.Function("symbolic", [*inputs, model.geometry], outputs)
+            numbers = with_symbols.call([*inputs, ca.SX(self.geometry.vector())])
+            self._programs[key] = bulk(ca.Function(type(self).__name__, inputs, numbers))
+        return self._programs[key]
+
+    def _poses(self, pose: Array) -> Array:
+        return _checked(pose, "pose", self.pose_names)
+
+    def _joints(self, joints: Array) -> Array:
+        return _checked(joints, "joints", self.joint_names)
+
+    @staticmethod
+    def _together(first: Array, second: Array) -> tuple[Array, Array]:
+        lead = np.broadcast_shapes(first.shape[:-1], second.shape[:-1])
+        return (
+            np.broadcast_to(first, (*lead, first.shape[-1])),
+            np.broadcast_to(second, (*lead, second.shape[-1])),
+        )
+
+
+def _checked(values: Array, what: str, names: tuple[str, ...]) -> Array:
+    array = np.asarray(values, dtype=float)
+    if array.ndim == 0 or array.shape[-1] != len(names):
+        raise InvalidShape(what, names, array.shape)
+    return array

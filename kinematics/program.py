@@ -1,0 +1,176 @@
+"""A CasADi SX function as a flat list of instructions, for whoever wants to run it.
+
+`Program` is the one form that the block interpreter (arrays of poses) and `replay` (any other kind of number:
+symbols, intervals, arbitrary precision) work from.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from kinematics.errors import LinkwrightError
+
+
+class Op(IntEnum):
+    """The operations that Linkwright's models use."""
+
+    CONST = 0
+    INPUT = 1
+    OUTPUT = 2
+    ASSIGN = 3
+    ADD = 4
+    SUB = 5
+    MUL = 6
+    DIV = 7
+    NEG = 8
+    SQRT = 9
+    SQ = 10
+    TWICE = 11
+    INV = 12
+    SIN = 13
+    COS = 14
+    ATAN2 = 15
+    FABS = 16
+    FMIN = 17
+    FMAX = 18
+    ATAN = 19
+    ACOS = 20
+    ASIN = 21
+    TAN = 22
+    EXP = 23
+    LOG = 24
+    POW = 25
+    SIGN = 26
+    LT = 27
+    LE = 28
+    NOT = 29
+    IF_ELSE_ZERO = 30
+
+
+_FROM_CASADI: dict[int, Op] = {getattr(ca, f"OP_{op.name}"): op for op in Op if op is not Op.CONST} | {
+    ca.OP_CONST: Op.CONST,
+    ca.OP_CONSTPOW: Op.POW,
+}
+
+
+class UnknownOperation(LinkwrightError):
+    """The function uses an operation that the interpreter does not know; it never guesses."""
+
+    def __init__(self, function: str, code: int) -> None:
+        self.function, self.code = function, code
+        super().__init__(f"function {function}: CasADi operation {code} is not known to the interpreter")
+
+
+@dataclass(frozen=True)
+class Program:
+    """Instructions in order: work[target] = op(work[left], work[right]).
+
+    INPUT reads column `left` of the inputs laid side by side; OUTPUT writes column `target` of the outputs laid side
+    by side (dense, column by column); CONST loads `constant`.
+    """
+
+    op: np.ndarray  # (k,) int64
+    left: np.ndarray  # (k,) int64
+    right: np.ndarray  # (k,) int64
+    target: np.ndarray  # (k,) int64
+    constant: np.ndarray  # (k,)
+    inputs: tuple[int, ...]  # number of columns of each input
+    outputs: tuple[tuple[int, int], ...]  # (rows, columns) of each output
+    work_size: int
+
+    @property
+    def output_size(self) -> int:
+        """Columns of all outputs laid side by side."""
+        return sum(rows * columns for rows, columns in self.outputs)
+
+    @classmethod
+    def of(cls, function: ca.Function) -> Program:
+        """Flatten an SX function.
+
+        Raises:
+            UnknownOperation: the function uses an operation outside `Op`.
+        """
+        inputs = tuple(function.nnz_in(i) for i in range(function.n_in()))
+        outputs = tuple(function.size_out(i) for i in range(function.n_out()))
+        input_start = np.concatenate([[0], np.cumsum(inputs)])
+        output_start = np.concatenate([[0], np.cumsum([r * c for r, c in outputs])])
+        places = [_dense_places(function.sparsity_out(i)) for i in range(function.n_out())]
+        rows: list[tuple[int, int, int, int, float]] = []
+        for k in range(function.n_instructions()):
+            code = function.instruction_id(k)
+            if code not in _FROM_CASADI:
+                raise UnknownOperation(function.name(), code)
+            op = _FROM_CASADI[code]
+            source, sink = function.instruction_input(k), function.instruction_output(k)
+            constant = function.instruction_constant(k) if op is Op.CONST else 0.0
+            if op is Op.INPUT:
+                rows.append((op, input_start[source[0]] + source[1], 0, sink[0], constant))
+            elif op is Op.OUTPUT:
+                rows.append((op, source[0], 0, output_start[sink[0]] + places[sink[0]][sink[1]], constant))
+            else:
+                left, right = (*source, 0, 0)[:2]
+                rows.append((op, left, right if len(source) > 1 else left, sink[0], constant))
+        table = [np.array(column) for column in zip(*rows, strict=True)]
+        op_, left_, right_, target_ = (column.astype(np.int64) for column in table[:4])
+        return cls(op_, left_, right_, target_, table[4].astype(float), inputs, outputs, function.sz_w())
+
+
+def _dense_places(sparsity: ca.Sparsity) -> list[int]:
+    """Position of each nonzero in the dense matrix, row by row."""
+    rows, columns = sparsity.get_triplet()
+    return [r * sparsity.size2() + c for r, c in zip(rows, columns, strict=True)]
+
+
+_SYMBOLIC: dict[Op, Callable[..., Any]] = {
+    Op.ASSIGN: lambda a, _: a,
+    Op.ADD: operator.add,
+    Op.SUB: operator.sub,
+    Op.MUL: operator.mul,
+    Op.DIV: operator.truediv,
+    Op.NEG: lambda a, _: -a,
+    Op.SQRT: lambda a, _: ca.sqrt(a),
+    Op.SQ: lambda a, _: a * a,
+    Op.TWICE: lambda a, _: 2 * a,
+    Op.INV: lambda a, _: 1 / a,
+    Op.SIN: lambda a, _: ca.sin(a),
+    Op.COS: lambda a, _: ca.cos(a),
+    Op.ATAN2: ca.atan2,
+    Op.FABS: lambda a, _: ca.fabs(a),
+    Op.FMIN: ca.fmin,
+    Op.FMAX: ca.fmax,
+}
+
+
+def replay(
+    program: Program, inputs: Sequence[Any], operations: Mapping[Op, Callable[[Any, Any], Any]] | None = None
+) -> list[Any]:
+    """Run the program over any kind of number; `operations` replaces the symbolic ones where given.
+
+    Args:
+        inputs: one number for each input column.
+        operations: Op -> function of (left, right).
+
+    Returns:
+        One number for each output column, row by row; 0.0 where the output is structurally zero.
+    """
+    table = {**_SYMBOLIC, **(operations or {})}
+    work: list[Any] = [0.0] * program.work_size
+    out: list[Any] = [0.0] * program.output_size
+    steps = zip(program.op, program.left, program.right, program.target, program.constant, strict=True)
+    for op, left, right, target, constant in steps:
+        if op == Op.CONST:
+            work[target] = float(constant)
+        elif op == Op.INPUT:
+            work[target] = inputs[left]
+        elif op == Op.OUTPUT:
+            out[target] = work[left]
+        else:
+            work[target] = table[Op(op)](work[left], work[right])
+    return out

@@ -1,0 +1,83 @@
+"""The rod-level view: a limb of two parallel rods holds an orientation only as long as J_int is regular.
+
+Each rod's length gives one equation between the actuators and all freedoms of the bodies it carries, tilts included:
+J_l q' = J_r v. Combining the rows (sums and differences of a limb's two rods) and the columns makes it block
+triangular, and the lower right block tells the internal singularities. Method and names: Krut et al. 2006, (47)-(58).
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from types import SimpleNamespace
+from typing import ClassVar, NamedTuple
+
+import casadi as ca
+import numpy as np
+
+from kinematics.indices import FviBounds
+from kinematics.mechanism import Array, Mechanism
+
+
+class BlockTriangular(NamedTuple):
+    """[J_q; 0] q' = [J_x J_int_x; 0 J_int] [x'; v_int]; (50)."""
+
+    j_q: Array
+    j_x: Array
+    j_int_x: Array
+    j_int: Array
+
+
+class RodLevel(Mechanism):
+    """A mechanism that also states the length of each single rod."""
+
+    rod_velocities: ClassVar[tuple[str, ...]]  # what v holds
+    row_combinations: ClassVar[np.ndarray]  # M of (51)
+    column_combinations: ClassVar[np.ndarray]  # P of (51)
+    margins = (*Mechanism.margins, "internal_determinant")
+
+    @staticmethod
+    @abstractmethod
+    def rod_closure(pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(k,) half of |A_ij B_ij|^2 - l^2 after a small displacement in the directions of `rod_velocities`."""
+
+    @classmethod
+    @abstractmethod
+    def internal_determinant_symbolic(cls) -> ca.SX:
+        """det J_int, up to a sign, over what makes it dimensionless in [-1, 1]."""
+
+    @classmethod
+    def rod_system_symbolic(cls) -> tuple[ca.SX, ca.SX]:
+        """J_l (k, m) and J_r (k, k) of (49) at a pose, by differentiation of the rods' lengths."""
+        model = cls.model()
+        displacement = ca.SX.sym("displacement", len(cls.rod_velocities))
+        rods = cls.rod_closure(model.pose, displacement, model.joints, model.g)
+        j_l, j_r = ca.jacobian(rods, model.joints), -ca.jacobian(rods, displacement)
+        j_l, j_r = (ca.substitute(j, displacement, 0 * displacement) for j in (j_l, j_r))
+        return model.at_pose(j_l), model.at_pose(j_r)
+
+    def rod_system(self, pose: Array) -> tuple[Array, Array]:
+        """J_l (..., k, m) and J_r (..., k, k) with J_l q' = J_r v; (49)."""
+        j_l, j_r = self._evaluate("rods", lambda _: list(self.rod_system_symbolic()), pose)
+        return j_l, j_r
+
+    def block_triangular(self, pose: Array) -> BlockTriangular:
+        """The system of `rod_system` after (51) and (52)."""
+        return BlockTriangular(*self._evaluate("blocks", lambda _: list(self._blocks_symbolic()), pose))
+
+    def internal_determinant(self, pose: Array) -> Array:
+        """(...,) det J_int, dimensionless in [-1, 1], sign kept; 0 is an internal singularity."""
+        return self._evaluate("internal", lambda _: [self.internal_determinant_symbolic()], pose)[0][..., 0]
+
+    def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
+        """Adds |det J_int|, normalised."""
+        if name == "internal_determinant":
+            return ca.fabs(self.internal_determinant_symbolic())
+        return super().margin_components(name, bounds, characteristic_length)
+
+    @classmethod
+    def _blocks_symbolic(cls) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
+        j_l, j_r = cls.rod_system_symbolic()
+        m, n = len(cls.joint_names), len(cls.pose_names)
+        left = ca.DM(cls.row_combinations) @ j_l
+        right = ca.DM(cls.row_combinations) @ j_r @ ca.DM(cls.column_combinations)
+        return left[:m, :], right[:m, :n], right[:m, n:], right[m:, n:]

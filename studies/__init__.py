@@ -1,0 +1,1 @@
+"""Study files, the pipeline, reports, checks and the command line."""

@@ -1,0 +1,1 @@
+"""Paths, actuator limits, timing laws, verification and set-points."""
