@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -91,7 +92,7 @@ def solve(problem: Problem, poses: Array, start: Array) -> NlpSolution:
     }
     rows |= {str(limit): limit.at_most - _sum(problem, limit, geometry) for limit in problem.sums}
     epigraph = _mapped(problem, problem.objective, poses, geometry) - t
-    nlp = {"x": ca.vertcat(scaled, t), "f": -t, "g": ca.vertcat(epigraph, *rows.values())}
+    nlp: dict[str, Any] = {"x": ca.vertcat(scaled, t), "f": -t, "g": ca.vertcat(epigraph, *rows.values())}
     solver = ca.nlpsol("synthesis", "ipopt", nlp, _OPTIONS)
     first = np.clip((start - low) / span, 0.0, 1.0)
     started = time.perf_counter()
@@ -114,7 +115,7 @@ def solve(problem: Problem, poses: Array, start: Array) -> NlpSolution:
     )
 
 
-_OPTIONS = {
+_OPTIONS: dict[str, Any] = {
     "print_time": False,
     "error_on_fail": False,
     "show_eval_warnings": False,  # the line search may try a geometry that cannot reach; IPOPT then shortens its step
@@ -150,14 +151,18 @@ def active_sets(problem: Problem, robot: Mechanism, worst: dict[str, float], clo
     sizes = robot.geometry.sizes()
     for bound, value in zip(problem.variables, robot.geometry.vector()[problem.places()], strict=True):
         item = f"[{bound.item}]" if sizes[bound.field] > 1 else ""
-        for side, limit in (("lower", bound.low), ("upper", bound.high)):
-            if abs(value - limit) <= closeness * (bound.high - bound.low):
-                found.append(f"{bound.field}{item} at its {side} bound {limit:g}")
+        found += [
+            f"{bound.field}{item} at its {side} bound {edge:g}"
+            for side, edge in (("lower", bound.low), ("upper", bound.high))
+            if abs(value - edge) <= closeness * (bound.high - bound.low)
+        ]
     for limit in problem.sums:
         total = sum(float(getattr(robot.geometry, f)) for f in limit.fields)
         if total >= limit.at_most * (1.0 - closeness):
             found.append(f"{' + '.join(limit.fields)} at its upper bound {limit.at_most:g}")
-    for requirement in problem.requirements:
-        if worst[requirement.margin] <= requirement.at_least + max(2 * problem.spare, closeness):
-            found.append(f"{requirement.margin} at its lower bound {requirement.at_least:g}")
+    found += [
+        f"{requirement.margin} at its lower bound {requirement.at_least:g}"
+        for requirement in problem.requirements
+        if worst[requirement.margin] <= requirement.at_least + max(2 * problem.spare, closeness)
+    ]
     return found

@@ -48,7 +48,7 @@ class Synthesis:
 
     Attributes:
         robot: the mechanism with the optimal geometry.
-        before, after: worst poses of the objective and of each requirement, by margin, of the prototype and the optimum.
+        before, after: worst poses of the objective and of each requirement, by margin: prototype and optimum.
         active: what holds the optimum back.
         rounds: the exchanges.
         status: the solver's last word.

@@ -167,7 +167,7 @@ class Heli4(RodLevel):
 
     @staticmethod
     def rod_closure(pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(8,) rods 11, 12, 21, ... 42; (47). The plates turn by theta + epsilon and the upper one climbs by -p epsilon_2.
+        """(8,) rods 11, 12, 21, ... 42; (47). The plates turn by theta + epsilon, the upper one climbs by -p epsilon_2.
 
         The paper's (49), (53) and (54) print the opposite sign for p, against its own (6).
         """
