@@ -16,6 +16,8 @@ class InvalidRegion(LinkwrightError):
 class SynthesisFailed(LinkwrightError):
     """The optimisation has no answer to stand by."""
 
+    exit_status = 1
+
     def __init__(self, reason: str, status: str) -> None:
         self.reason, self.status = reason, status
         super().__init__(f"no optimum: {reason} (solver status: {status})")
