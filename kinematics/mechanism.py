@@ -17,9 +17,15 @@ import numpy as np
 from kinematics.bodies import Bodies
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.geometry import GeometryRecord
-from kinematics.indices import FviBounds, fvi_components, homogeneous, isotropic_components
+from kinematics.indices import (
+    FviBounds,
+    force_capability_components,
+    fvi_components,
+    homogeneous,
+    isotropic_components,
+)
 from kinematics.interpreter import bulk, evaluate
-from kinematics.linear import determinant
+from kinematics.linear import volume
 from kinematics.model import Model, model_of
 from kinematics.program import Program
 
@@ -70,7 +76,10 @@ class Mechanism(ABC):
     @staticmethod
     @abstractmethod
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
-        """What J_q's diagonal (m,) and det J_x are divided by, so that both lie in [-1, 1]."""
+        """What J_q's diagonal (m,) and det J_x are divided by, so that both lie in [-1, 1].
+
+        With m > n it is sqrt(det J_x^T J_x) that takes the determinant's place.
+        """
 
     @abstractmethod
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
@@ -143,6 +152,17 @@ class Mechanism(ABC):
         )
         return speeds.min(axis=-1), forces.min(axis=-1)
 
+    def force_capability(self, pose: Array, characteristic_length: float | None = None) -> Array:
+        """(...,) largest force in every direction for unit joint effort, over all distributions of the efforts.
+
+        With m = n it is f_w; with m > n it is larger, as f_w admits minimum-norm efforts only.
+        """
+        length = self._length(characteristic_length)
+        (values,) = self._evaluate(
+            ("capability", length), lambda m: [force_capability_components(self._homogeneous(m, length))], pose
+        )
+        return values.min(axis=-1)
+
     def fvi(self, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None) -> Array:
         """(...,) min(v_w / v_wl, f_w / f_wl); Shayya et al. (39). NaN where the pose is out of reach."""
         return self.margin("fvi", pose, bounds, characteristic_length)
@@ -186,7 +206,7 @@ class Mechanism(ABC):
             return fvi_components(self._homogeneous(model, characteristic_length), bounds)
         q_scale, x_scale = self.scales(model.g)
         if name == "det_J_x":
-            return ca.fabs(determinant(model.j_x_at_pose)) / x_scale
+            return volume(model.j_x_at_pose) / x_scale
         normalised = ca.fabs(model.j_q_at_pose) / q_scale
         if name == "J_q":
             return normalised
