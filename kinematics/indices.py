@@ -66,8 +66,8 @@ def isotropic_components(j_mw: ca.SX) -> tuple[ca.SX, ca.SX]:
 def force_capability_components(j_mw: ca.SX) -> ca.SX:
     """Distances from the origin to the facets of the zonotope of forces J_mw^T tau, |tau_i| <= 1.
 
-    A facet is parallel to n - 1 of the rows of J_mw, so its normal u is their generalised cross product and its distance
-    is sum_i |j_i . u| / |u|. The smallest is the radius of the largest ball of forces that some joint efforts within
+    A facet is parallel to n - 1 of the rows j_i of J_mw: its normal u is their generalised cross product, its distance
+    sum_i |j_i . u| / |u|. The smallest is the radius of the largest ball of forces that some joint efforts within
     their limits give. Rows that depend on each other span no facet and give infinity.
 
     Args:

@@ -15,7 +15,7 @@ import numpy as np
 
 from kinematics.errors import InvalidValue
 from kinematics.interpreter import evaluate
-from kinematics.linear import adjugate
+from kinematics.linear import adjugate, determinant
 from kinematics.mechanism import Array, Build, Mechanism
 from kinematics.model import Model
 
@@ -41,11 +41,13 @@ class EncoderCheck(NamedTuple):
     """What the redundancy says of the encoders.
 
     Attributes:
-        pose: (..., n) the best fit to all joints that are not suspected (to all, where none is).
+        pose: (..., n) the best fit to all joints that are not suspected (to all, where none is); NaN where those do
+            not determine it.
         residuals: (..., m) measured joints less those of the best fit to all [m or rad].
         consistent: (...,) all residuals are within the encoders' accuracy.
-        suspects: (..., m) encoders, each of which alone explains the disagreement. One: it is the faulty one. Several:
-            they cannot be told apart. None, though not consistent: more than one is faulty, or the pose is unknown.
+        suspects: (..., m) encoders, each of which alone explains the disagreement, or could not be cleared as the fit
+            without it did not converge. One: it is the faulty one. Several: they cannot be told apart. None, though
+            not consistent: more than one is faulty.
     """
 
     pose: Array
@@ -116,7 +118,10 @@ def _iterate(robot: Mechanism, pose: Array, measured: Array, weight: Array) -> t
 
 
 def _newton(model: Model) -> Build:
-    """Cost, the damped Newton step, and the Hessian's leading minors (all positive: a minimum)."""
+    """Cost, the damped step, and the Hessian's leading minors (all positive: a minimum).
+
+    Where the Hessian is not positive definite, its Gauss-Newton part, which is, takes its place.
+    """
     n, m = model.pose.shape[0], model.joints.shape[0]
     measured, weight = ca.SX.sym("measured", m), ca.SX.sym("weight", m)
     damping = ca.SX.sym("damping")
@@ -124,10 +129,11 @@ def _newton(model: Model) -> Build:
     cost = ca.dot(weight, residuals**2) / 2
     hessian, gradient = ca.hessian(cost, model.pose)
     slopes = ca.jacobian(model.inverse, model.pose)
-    scale = ca.sum1(ca.repmat(weight, 1, n) * slopes**2).T
-    cofactors, det = adjugate(hessian + damping * ca.diag(scale))
-    minors = [adjugate(hessian[:k, :k])[1] for k in range(1, n + 1)]
-    return [model.pose, measured, weight, damping], [cost, -(cofactors @ gradient) / det, ca.vertcat(*minors)]
+    gauss = slopes.T @ ca.diag(weight) @ slopes
+    minors = ca.vertcat(*(determinant(hessian[:k, :k]) for k in range(1, n + 1)))
+    matrix = ca.if_else(ca.mmin(minors) > 0, hessian, gauss) + damping * ca.diag(ca.diag(gauss))
+    cofactors, det = adjugate(matrix)
+    return [model.pose, measured, weight, damping], [cost, -(cofactors @ gradient) / det, minors]
 
 
 def check_encoders(robot: Mechanism, joints: Array, fit: BestFit, accuracy: float) -> EncoderCheck:
@@ -143,10 +149,9 @@ def check_encoders(robot: Mechanism, joints: Array, fit: BestFit, accuracy: floa
     m = joints.shape[-1]
     consistent = _worst(fit.residuals) <= accuracy
     alone = least_squares(robot, joints[..., None, :], fit.pose[..., None, :], 1.0 - np.eye(m))
-    left = np.where(np.eye(m, dtype=bool), 0.0, np.abs(alone.residuals))  # NaN where no pose was found
-    suspects = (_worst(left) <= accuracy) & ~consistent[..., None]
-    trusted = np.where(np.isnan(fit.pose).any(axis=-1, keepdims=True), np.nan, 1.0) * (1.0 - suspects)
-    best = least_squares(robot, joints, fit.pose, np.nan_to_num(trusted))
+    cleared = _worst(np.where(np.eye(m, dtype=bool), 0.0, alone.residuals)) > accuracy
+    suspects = ~cleared & ~consistent[..., None]
+    best = least_squares(robot, joints, fit.pose, 1.0 - suspects)
     return EncoderCheck(best.pose, fit.residuals, consistent, suspects)
 
 

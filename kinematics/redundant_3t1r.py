@@ -11,17 +11,16 @@ other direction would be turned with the platform at one end and not at the othe
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import ClassVar, NamedTuple
 
 import casadi as ca
 import numpy as np
+from scipy.linalg import block_diag
 
 from kinematics.bodies import Bodies
 from kinematics.clearance import segment_distances
 from kinematics.errors import InvalidShape
-from kinematics.geometry import GeometryRecord, length
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.linear import volume
@@ -29,6 +28,7 @@ from kinematics.mechanism import Array, Build
 from kinematics.model import Model
 from kinematics.redundancy import BestFit, EncoderCheck, check_encoders, least_squares
 from kinematics.redundant_3t1r_forward import CANDIDATES, candidate_poses
+from kinematics.redundant_3t1r_geometry import Redundant3T1RGeometry, Redundant3T1RInertia
 from kinematics.rods import RodLevel
 
 _LIMBS = 6
@@ -41,50 +41,6 @@ _OUTER = (0, 1, 4, 5)
 # Arms that meet at a platform point have no distance to keep.
 _APART = tuple((i, j) for i in range(_LIMBS) for j in range(i + 1, _LIMBS) if i // 2 != j // 2)
 _ROUNDING = 1e-9  # by how much rounding may break (21) [m]
-
-
-@dataclass(frozen=True)
-class Redundant3T1RGeometry(GeometryRecord):
-    """The optimised parameters of section V.D, in metres.
-
-    Raises:
-        InvalidGeometry: also where rails coincide (y_1 = 0 or y_3 = 0), or where z_1 = a/2: then every arm is level at
-            z = 0 and nothing holds the platform's height there.
-    """
-
-    outer_arm_length: float = length(1.25, doc="L1, arms 1, 2, 5 and 6")
-    middle_arm_length: float = length(1.0926, doc="L3, arms 3 and 4")
-    outer_rail_y: float = length(-0.375, minimum=None, doc="y1, of rails 1 and 5; rails 2 and 6 are at -y1")
-    middle_rail_y: float = length(-0.4602, minimum=None, doc="y3, of rail 3; rail 4 is at -y3")
-    outer_rail_z: float = length(0.3, minimum=None, doc="z1, of rails 1 and 2; rails 5 and 6 are at -z1")
-    platform_length: float = length(0.1126, doc="d, between B1 and B3 seen from above")
-    platform_height: float = length(0.2, doc="a, from B5 up to B1")
-    parallelogram_width: float = length(0.1, doc="between the two rods of arms 3 and 4; not in the paper")
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        for name in ("outer_rail_y", "middle_rail_y"):
-            if getattr(self, name) == 0.0:
-                raise self._invalid(name, 0.0, "other than 0 m, or two rails coincide")
-        if self.outer_rail_z == self.platform_height / 2:
-            raise self._invalid("outer_rail_z", self.outer_rail_z, "other than platform_height / 2")
-
-
-@dataclass(frozen=True)
-class Redundant3T1RInertia:
-    """A light machine with carbon arms: an assumption of this project, the paper gives no masses. SI units.
-
-    Attributes:
-        slide_mass: one carriage with the moving part of its linear motor.
-        rod_mass: one rod, half at each end; arms 3 and 4 have two.
-        platform_mass: at the tool centre point P, where the payload sits too.
-        platform_inertia: of the platform about e_z through P.
-    """
-
-    slide_mass: float = 5.0
-    rod_mass: float = 0.9
-    platform_mass: float = 3.0
-    platform_inertia: float = 0.015
 
 
 class ParallelSingularity(NamedTuple):
@@ -114,10 +70,8 @@ class Redundant3T1R(RodLevel):
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=1.0, speed=0.5, force=0.5)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta")
     # (51) of Krut et al.: single rods stay, a parallelogram gives its rods' mean and, last, their difference.
-    row_combinations = np.zeros((8, 8))
-    row_combinations[[0, 1, 2, 2, 3, 3, 4, 5, 6, 6, 7, 7], [0, 1, 2, 3, 4, 5, 6, 7, 2, 3, 4, 5]] = [
-        1, 1, 0.5, 0.5, 0.5, 0.5, 1, 1, -1, 1, -1, 1,
-    ]  # fmt: skip
+    row_combinations = block_diag(np.eye(2), [[0.5, 0.5]], [[0.5, 0.5]], np.eye(2), np.zeros((2, 0)))
+    row_combinations[6:, 2:6] = np.kron(np.eye(2), [-1.0, 1.0])
     column_combinations = np.eye(6)[:, [0, 1, 2, 5, 3, 4]]
 
     @property
@@ -246,25 +200,29 @@ class Redundant3T1R(RodLevel):
         lines["platform"] = ca.horzcat(platform[:, 0], middle, platform[:, 2], middle, platform[:, 4])
         return lines
 
-    def arm_distances(self, pose: Array) -> dict[tuple[int, int], Array]:
-        """Distance between the axes A_i B_i of every two arms that do not share a platform point.
+    def arm_distances(self, pose: Array, rods: bool = False) -> dict[tuple[int, int], Array]:
+        """Distance between the axes of every two arms that do not share a platform point.
+
+        Args:
+            rods: take arms 3 and 4 as the two rods that they are, not as the middle line A_i B_i.
 
         Returns:
-            {(i, j): (...,) metres}, arms counted from 1; the axis of a parallelogram is its middle line. NaN out of
-            reach.
+            {(i, j): (...,) metres}, arms counted from 1; NaN out of reach.
         """
         rails, platform = self._evaluate(
             "arms", lambda m: [m.at_pose(self.rail_points(m.joints, m.g)), self.platform_points(m.pose, m.g)], pose
         )
         ends = np.moveaxis(np.stack([rails, platform], axis=-1), -2, 0)  # (6, ..., 3, 2)
+        half = np.array([0.0, 0.0, self.geometry.parallelogram_width / 2 if rods else 0.0])[:, None]
+        lines = [(e - half, e + half) if i in _PARALLELOGRAMS and rods else (e,) for i, e in enumerate(ends)]
         return {
-            (i + 1, j + 1): segment_distances(ends[i, ..., 0], ends[i, ..., 1], ends[j, ..., 0], ends[j, ..., 1])
+            (i + 1, j + 1): np.min([_between(one, two) for one in lines[i] for two in lines[j]], axis=0)
             for i, j in _APART
         }
 
-    def arm_clearance(self, pose: Array) -> Array:
+    def arm_clearance(self, pose: Array, rods: bool = False) -> Array:
         """(...,) the smallest of `arm_distances` [m]; the arms' thickness is still to be taken off."""
-        return np.min(list(self.arm_distances(pose).values()), axis=0)
+        return np.min(list(self.arm_distances(pose, rods).values()), axis=0)
 
     # The forward models.
 
@@ -336,3 +294,8 @@ class Redundant3T1R(RodLevel):
         """
         joints = self._joints(joints)
         return check_encoders(self, joints, self.forward_least_squares(joints), accuracy)
+
+
+def _between(one: Array, two: Array) -> Array:
+    """Distance of two lines, each (..., 3, 2) with its ends last."""
+    return segment_distances(one[..., 0], one[..., 1], two[..., 0], two[..., 1])
