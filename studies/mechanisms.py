@@ -1,0 +1,81 @@
+"""What a study needs to know of a mechanism; `kinematics` is loaded only when it is asked for."""
+
+import dataclasses
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any, ClassVar, Protocol
+
+from kinematics.errors import LinkwrightError
+
+
+class Mechanism(Protocol):
+    """The class of a mechanism, as far as a study file speaks of it."""
+
+    Geometry: ClassVar[type]  # frozen dataclass; each field's metadata has "dimension"
+    pose_names: ClassVar[tuple[str, ...]]
+    margins: ClassVar[tuple[str, ...]]
+
+
+class UnknownMechanismError(LinkwrightError):
+    """No mechanism is called `name`; `known` are the names."""
+
+    def __init__(self, name: str, known: tuple[str, ...]) -> None:
+        super().__init__(name, known)
+        self.name, self.known = name, known
+
+    def __str__(self) -> str:
+        return f"unknown mechanism {self.name!r}; known: {', '.join(self.known)}"
+
+
+@dataclasses.dataclass(frozen=True)
+class GeometryField:
+    """A field of a mechanism's geometry: `shape` () for a number, (4,) for four."""
+
+    dimension: str
+    shape: tuple[int, ...]
+    is_magnitude: bool
+
+
+def mechanism_names() -> tuple[str, ...]:
+    """The names that a study's `mechanism` may have."""
+    return tuple(_mechanisms())
+
+
+def mechanism_class(name: str) -> type[Mechanism]:
+    """The class called `name`. Raises UnknownMechanismError."""
+    try:
+        return _mechanisms()[name]
+    except KeyError:
+        raise UnknownMechanismError(name, mechanism_names()) from None
+
+
+def geometry_fields(mechanism: type[Mechanism]) -> dict[str, GeometryField]:
+    """The geometry's fields by name; the prototype's values give the shapes."""
+    prototype = mechanism.Geometry()
+    return {
+        field.name: GeometryField(
+            dimension=field.metadata["dimension"],
+            shape=shape(getattr(prototype, field.name)),
+            is_magnitude=field.metadata["dimension"] == "length" and _says_magnitude(field.name),
+        )
+        for field in dataclasses.fields(mechanism.Geometry)
+    }
+
+
+def shape(value: object) -> tuple[int, ...]:
+    """The shape of nested tuples of numbers, () for a number; -1 where entries differ."""
+    if not isinstance(value, tuple):
+        return ()
+    inner = {shape(entry) for entry in value}
+    return (len(value), *inner.pop()) if len(inner) == 1 else (len(value), -1)
+
+
+def _mechanisms() -> Mapping[str, type[Mechanism]]:
+    kinematics: Any = import_module("kinematics")
+    mechanisms: Mapping[str, type[Mechanism]] = kinematics.MECHANISMS
+    return mechanisms
+
+
+def _says_magnitude(name: str) -> bool:
+    # A rail's y or an offset is a coordinate and may be negative; a rod's length may not.
+    return name.rsplit("_", 1)[-1].removesuffix("s") in {"length", "radiu", "width", "distance", "height"}
