@@ -50,15 +50,9 @@ class StudyError(LinkwrightError):
 
 
 def dotted(path: KeyPath) -> str:
-    """`path` as a user would write it: `requirement[1].margin`, counted from 1."""
-    text = ""
-    for part in path:
-        if isinstance(part, int):
-            text += f"[{part + 1}]"
-        else:
-            bare = re.fullmatch(r"[A-Za-z0-9_-]+", part)
-            text += ("." if text else "") + (part if bare else json.dumps(part))
-    return _cut(text)
+    """`path` as the file spells it; a row of an array of tables is told by its line, not by a number."""
+    names = (part for part in path if isinstance(part, str))
+    return _cut(".".join(name if re.fullmatch(r"[\w-]+", name) else json.dumps(name) for name in names))
 
 
 def spelled(value: object) -> str:

@@ -78,4 +78,4 @@ def _mechanisms() -> Mapping[str, type[Mechanism]]:
 
 def _says_magnitude(name: str) -> bool:
     # A rail's y or an offset is a coordinate and may be negative; a rod's length may not.
-    return name.rsplit("_", 1)[-1].removesuffix("s") in {"length", "radiu", "width", "distance", "height"}
+    return name.rsplit("_", 1)[-1] in {"length", "lengths", "radius", "radii", "width", "distance", "height"}
