@@ -63,7 +63,6 @@ def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyP
 
 def _region_faults(region: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:
     if region.get("kind") not in REGION_KINDS:
-        yield ("region", "kind")
         return
     for name in _coordinates(mechanism, region["kind"]):
         interval = region.get(name)

@@ -71,7 +71,7 @@ def _spelled(value: object) -> str:
         case list():
             return f"[{', '.join(map(_spelled, value))}]"
         case dict():
-            return "a table"
+            return "a table" if value else "an empty table"
         case _:
             return str(value)
 

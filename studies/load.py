@@ -64,7 +64,8 @@ def _invalid(error: ValidationError, table: Table) -> Iterator[KeyPath]:
                 if isinstance(inner, Key):
                     break
                 node = inner
-        yield tuple(path)
+        # A region of no known kind is rejected as a whole.
+        yield (*path, "kind") if detail["type"].startswith("union_tag") else tuple(path)
 
 
 def _problems(file: TomlFile, table: Table, conversion: Conversion, wrong: set[KeyPath]) -> list[Problem]:

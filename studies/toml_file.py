@@ -35,11 +35,15 @@ class TomlFile:
 
     def value(self, path: KeyPath) -> object:
         """The value at `path`; raises LookupError where there is none."""
-        node: Any = self.data
+        node: object = self.data
         for part in path:
-            if not isinstance(node, dict if isinstance(part, str) else list):
-                raise LookupError(dotted(path))
-            node = node[part]
+            match part, node:
+                case str(), dict():
+                    node = node[part]
+                case int(), list():
+                    node = node[part]
+                case _:
+                    raise LookupError(dotted(path))
         return node
 
     def line(self, path: KeyPath) -> int:

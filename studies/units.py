@@ -74,7 +74,8 @@ class Table:
 
     def describe(self) -> str:
         """The words of an error where there is no such table."""
-        return "an array of tables" if self.rows else "a table"
+        keys = f"one or more of {', '.join(self.keys)}"
+        return f"an array of tables, each with {keys}" if self.rows else f"a table with {keys}"
 
 
 @dataclass(frozen=True)
