@@ -68,9 +68,9 @@ def _region_faults(region: Mapping[str, Any], mechanism: type[Mechanism]) -> Ite
         interval = region.get(name)
         if interval is None:
             yield ("region", name)
-        elif _pose_dimension(name) is Dimension.ANGLE and shape(interval) == (2,):
-            low, *_, high = _numbers(interval) or [0.0, 0.0]
-            if high - low > _TURN:
+        elif _pose_dimension(name) is Dimension.ANGLE:
+            angles = _numbers(interval)
+            if angles and angles[-1] - angles[0] > _TURN:
                 yield ("region", name)
 
 

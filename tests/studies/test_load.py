@@ -146,6 +146,7 @@ FAULTS = {
     "upside down": ("z = [-0.80, -0.60]", "z = [-0.6, -0.8]", "region.z", "a number, or low < high (m)"),
     "three numbers": ("z = [-0.80, -0.60]", "z = [1, 2, 3]", "region.z", "found [1, 2, 3]"),
     "over a turn": ("[-180, 180]", "[-180, 181]", "region.theta_deg", "at most a turn apart (deg)"),
+    "a word for an angle": ("[-180, 180]", "[-180, 'x']", "region.theta_deg", "at most a turn apart (deg)"),
     "disc has x": ("radius = 0.5", "radius = 0.5\nx = 1", "region.x", "unknown key"),
     "region kind": ('"cylinder"', '"cylindre"', "region.kind", "box, cylinder (did you mean cylinder?)"),
     "zero length": ("arm_length_mm = 351", "arm_length_mm = 0", "geometry.arm_length_mm", "number > 0 (mm)"),
