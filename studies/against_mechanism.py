@@ -45,13 +45,14 @@ def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyP
     fields = geometry_fields(mechanism)
     for name, value in _table(data, "geometry").items():
         field = fields[name]
-        if shape(value) != field.shape or (field.is_magnitude and min(_numbers(value), default=1) <= 0):
+        if shape(value) != field.shape or not all(field.allows(n, n) for n in _numbers(value)):
             yield ("geometry", name)
     if isinstance(data.get("region"), dict):
         yield from _region_faults(data["region"], mechanism)
     optimise = _table(data, "optimise")
     for name, bounds in _table(optimise, "variables").items():
-        if fields[name].is_magnitude and min(_numbers(bounds), default=1) <= 0:
+        numbers = _numbers(bounds)
+        if numbers and not fields[name].allows(numbers[0], numbers[-1]):
             yield ("optimise", "variables", name)
     for i, names in _rows(optimise, "sums", "fields"):
         if isinstance(names, tuple) and not set(map(str, names)) <= set(_lengths(fields)):
@@ -99,13 +100,19 @@ def _pose_dimension(name: str) -> Dimension:
 def _dimensions(field: GeometryField) -> Key:
     count = " x ".join(map(str, field.shape)) or "a"
     plural = "s" if field.shape else ""
-    sign = " > 0" if field.is_magnitude else ""
-    return Key(f"{count} finite number{plural}{sign}", Dimension(field.dimension))
+    return Key(f"{count} finite number{plural}{_condition(field)}", Dimension(field.dimension))
 
 
 def _bounds(field: GeometryField) -> Key:
-    sign = "0 < " if field.is_magnitude else ""
-    return Key(f"{sign}low < high", Dimension(field.dimension))
+    return Key(f"low < high{_condition(field)}", Dimension(field.dimension))
+
+
+def _condition(field: GeometryField) -> str:
+    if field.dimension == Dimension.LENGTH_PER_TURN:
+        return ", 0 left out"
+    if field.minimum is None:
+        return ""
+    return f", above {field.minimum:g} m" if field.minimum else ", above 0"
 
 
 def _lengths(fields: Mapping[str, GeometryField]) -> tuple[str, ...]:

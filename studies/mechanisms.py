@@ -11,7 +11,7 @@ from kinematics.errors import LinkwrightError
 class Mechanism(Protocol):
     """The class of a mechanism, as far as a study file speaks of it."""
 
-    Geometry: ClassVar[type]  # frozen dataclass; each field's metadata has "dimension"
+    Geometry: ClassVar[type]  # frozen dataclass; each field's metadata has "dimension", some "minimum"
     pose_names: ClassVar[tuple[str, ...]]
     margins: ClassVar[tuple[str, ...]]
 
@@ -29,11 +29,19 @@ class UnknownMechanismError(LinkwrightError):
 
 @dataclasses.dataclass(frozen=True)
 class GeometryField:
-    """A field of a mechanism's geometry: `shape` () for a number, (4,) for four."""
+    """A field of a mechanism's geometry: `shape` () for a number, (4,) for four.
+
+    Every number is above `minimum` [SI]; None allows any sign. No pitch is zero.
+    """
 
     dimension: str
     shape: tuple[int, ...]
-    is_magnitude: bool
+    minimum: float | None
+
+    def allows(self, low: float, high: float) -> bool:
+        """Whether the field may hold every number from `low` to `high` [SI]."""
+        without_zero = self.dimension != "length_per_turn" or not low <= 0 <= high
+        return without_zero and (self.minimum is None or low > self.minimum)
 
 
 def mechanism_names() -> tuple[str, ...]:
@@ -56,7 +64,7 @@ def geometry_fields(mechanism: type[Mechanism]) -> dict[str, GeometryField]:
         field.name: GeometryField(
             dimension=field.metadata["dimension"],
             shape=shape(getattr(prototype, field.name)),
-            is_magnitude=field.metadata["dimension"] == "length" and _says_magnitude(field.name),
+            minimum=field.metadata.get("minimum"),
         )
         for field in dataclasses.fields(mechanism.Geometry)
     }
@@ -74,8 +82,3 @@ def _mechanisms() -> Mapping[str, type[Mechanism]]:
     kinematics: Any = import_module("kinematics")
     mechanisms: Mapping[str, type[Mechanism]] = kinematics.MECHANISMS
     return mechanisms
-
-
-def _says_magnitude(name: str) -> bool:
-    # A rail's y or an offset is a coordinate and may be negative; a rod's length may not.
-    return name.rsplit("_", 1)[-1] in {"length", "lengths", "radius", "radii", "width", "distance", "height"}

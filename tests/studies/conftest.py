@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import pytest
 
@@ -63,6 +63,21 @@ torque = 127
 jerk = 1e5
 """
 
+MINIMAL = """\
+title = "t"
+mechanism = "Fake"
+[region]
+kind = "box"
+x = 0
+y = [-0.25, 0.25]
+z_mm = [-200, 200]
+theta_deg = 90
+"""
+
+
+def length(default: Any, minimum: float | None = None) -> Any:
+    return field(default=default, metadata={"dimension": "length", "minimum": minimum})
+
 
 class Fake:
     """As much of a mechanism as a study file speaks of."""
@@ -72,14 +87,12 @@ class Fake:
 
     @dataclass(frozen=True)
     class Geometry:
-        arm_length: float = field(default=0.35, metadata={"dimension": "length"})
-        rod_length: float = field(default=0.8, metadata={"dimension": "length"})
-        plate_offset: float = field(default=0.0, metadata={"dimension": "length"})
+        arm_length: float = length(0.35, minimum=0.0)
+        rod_length: float = length(0.8, minimum=0.0)
+        plate_offset: float = length(0.0)
         pitch: float = field(default=0.05, metadata={"dimension": "length_per_turn"})
         azimuths: tuple[float, ...] = field(default=(0.0, 1.0, 2.0, 3.0), metadata={"dimension": "angle"})
-        points: tuple[tuple[float, ...], ...] = field(
-            default=((0.0, 1.0), (1.0, 0.0), (1.0, 1.0)), metadata={"dimension": "length"}
-        )
+        points: tuple[tuple[float, ...], ...] = length(((0.0, 1.0), (1.0, 0.0), (1.0, 1.0)))
 
 
 @pytest.fixture(autouse=True)
@@ -107,3 +120,8 @@ def write(tmp_path: Path) -> Write:
 @pytest.fixture
 def study_text() -> str:
     return STUDY
+
+
+@pytest.fixture
+def minimal_text() -> str:
+    return MINIMAL
