@@ -16,7 +16,7 @@ class Mechanism(Protocol):
     margins: ClassVar[tuple[str, ...]]
 
 
-class UnknownMechanismError(LinkwrightError):
+class UnknownMechanism(LinkwrightError):
     """No mechanism is called `name`; `known` are the names."""
 
     def __init__(self, name: str, known: tuple[str, ...]) -> None:
@@ -50,11 +50,11 @@ def mechanism_names() -> tuple[str, ...]:
 
 
 def mechanism_class(name: str) -> type[Mechanism]:
-    """The class called `name`. Raises UnknownMechanismError."""
+    """The class called `name`. Raises UnknownMechanism."""
     try:
         return _mechanisms()[name]
     except KeyError:
-        raise UnknownMechanismError(name, mechanism_names()) from None
+        raise UnknownMechanism(name, mechanism_names()) from None
 
 
 def geometry_fields(mechanism: type[Mechanism]) -> dict[str, GeometryField]:

@@ -8,6 +8,7 @@ import pytest
 from pydantic import ValidationError
 
 from studies.load import load_study
+from studies.mechanisms import UnknownMechanism, mechanism_class
 from studies.schema import BoxRegion, CylinderRegion
 
 Write = Callable[[str], Path]
@@ -109,3 +110,9 @@ def test_the_prototype_may_lie_outside_the_bounds(write: Write, minimal_text: st
 
 def test_a_coordinate_of_the_geometry_may_be_negative(write: Write, minimal_text: str) -> None:
     assert load_study(write(minimal_text + "[geometry]\nplate_offset_mm = -3\n")).geometry == {"plate_offset": -0.003}
+
+
+def test_an_unknown_mechanism_carries_the_known_names() -> None:
+    with pytest.raises(UnknownMechanism, match="unknown mechanism 'Fale'; known: Fake") as caught:
+        mechanism_class("Fale")
+    assert (caught.value.name, caught.value.known) == ("Fale", ("Fake",))
