@@ -109,7 +109,6 @@ class Box(Region):
                 pose[..., i] = low
         return pose
 
-
     def contains(self, poses: Array, names: Sequence[str]) -> Array:
         """Each coordinate between its bounds."""
         low, high = np.array([self._intervals[name] for name in names]).T
@@ -161,7 +160,6 @@ class Cylinder(Region):
         pose[..., names.index("y")] = radius * np.sin(azimuth)
         pose[..., [names.index(name) for name in others]] = self._rest.from_unit(unit[..., 2:], others)
         return pose
-
 
     def contains(self, poses: Array, names: Sequence[str]) -> Array:
         """Inside the circle, and the other coordinates between their bounds."""

@@ -1,11 +1,13 @@
 """What a study may say of its mechanism: the keys that follow from it, and the faults that only it shows."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from studies.errors import KeyPath
-from studies.mechanisms import GeometryField, Mechanism, geometry_fields, shape
+from studies.mechanisms import GeometryField, geometry_fields, shape
 from studies.schema import (
     REGION_KINDS,
     BoxRegion,
@@ -17,6 +19,9 @@ from studies.schema import (
     table_of,
 )
 from studies.units import Dimension, Key, Table
+
+if TYPE_CHECKING:
+    from kinematics import Mechanism
 
 _TURN = 2 * math.pi * (1 + 1e-12)  # converting degrees rounds
 
@@ -51,8 +56,12 @@ def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyP
         yield from _region_faults(data["region"], mechanism)
     optimise = _table(data, "optimise")
     for name, bounds in _table(optimise, "variables").items():
-        numbers = _numbers(bounds)
-        if numbers and not fields[name].allows(numbers[0], numbers[-1]):
+        field = fields[name]
+        pairs = bounds if field.shape and isinstance(bounds, tuple) else (bounds,)
+        ends = [_numbers(pair) for pair in pairs]
+        if len(ends) != math.prod(field.shape) or any(
+            len(pair) != 2 or not field.allows(pair[0], pair[1]) for pair in ends
+        ):
             yield ("optimise", "variables", name)
     for i, names in _rows(optimise, "sums", "fields"):
         if isinstance(names, tuple) and not set(map(str, names)) <= set(_lengths(fields)):

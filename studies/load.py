@@ -1,17 +1,22 @@
 """From a `study.toml` to a checked `Study`, with every fault of the file reported at once."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
 from studies.against_mechanism import faults, study_table
 from studies.errors import KeyPath, Problem, StudyError, spelled
-from studies.mechanisms import Mechanism, mechanism_class, mechanism_names
+from studies.mechanisms import mechanism_class, mechanism_names
 from studies.schema import Study, table_of
 from studies.toml_file import TomlFile, read_toml
 from studies.units import Conversion, Key, Table
+
+if TYPE_CHECKING:
+    from kinematics import Mechanism
 
 # Without a known mechanism nothing can be said about these.
 _OF_THE_MECHANISM = ("geometry", "region", "optimise", "requirement")

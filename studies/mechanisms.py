@@ -1,19 +1,16 @@
 """What a study needs to know of a mechanism; `kinematics` is loaded only when it is asked for."""
 
+from __future__ import annotations
+
 import dataclasses
 from collections.abc import Mapping
 from importlib import import_module
-from typing import Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any
 
 from kinematics.errors import LinkwrightError
 
-
-class Mechanism(Protocol):
-    """The class of a mechanism, as far as a study file speaks of it."""
-
-    Geometry: ClassVar[type]  # frozen dataclass; each field's metadata has "dimension", some "minimum"
-    pose_names: ClassVar[tuple[str, ...]]
-    margins: ClassVar[tuple[str, ...]]
+if TYPE_CHECKING:
+    from kinematics import Mechanism
 
 
 class UnknownMechanism(LinkwrightError):

@@ -11,10 +11,10 @@ from typing import Any
 import tomli_w
 
 from design.search import WorstPoses
-from design.synthesis import Synthesis
 from kinematics import Mechanism
 from kinematics.errors import LinkwrightError
-from studies.schema import Study
+from studies.mechanisms import mechanism_class, mechanism_names
+from studies.pipeline import Outcome
 
 FILE = "optimum.toml"
 
@@ -37,7 +37,7 @@ class Optimum:
         figures: worst value of each margin over the region by its name; the prototype's objective as `prototype`.
         poses: where each worst value is.
         cycle: figures of the timed cycle; empty where the study asks for none.
-        made_by: version, study digest, seed, solver status, sample size.
+        made_by: version, study digest, seed, solver status, sample size, characteristic length [m].
         active: what holds the optimum back.
     """
 
@@ -65,31 +65,44 @@ class Optimum:
             multiline_strings=False,
         )
 
-    def robot(self, kind: type[Mechanism]) -> Mechanism:
-        """The mechanism with this geometry."""
+    def robot(self, path: Path) -> Mechanism:
+        """The mechanism with this geometry; `path` is named where it is impossible.
+
+        Raises:
+            InvalidOptimum: an unknown mechanism or field.
+            InvalidGeometry: an impossible value.
+        """
+        if self.mechanism not in mechanism_names():
+            raise InvalidOptimum(path, "mechanism", self.mechanism, f"one of {', '.join(mechanism_names())}")
+        kind = mechanism_class(self.mechanism)
+        known = kind.Geometry.sizes()
+        for field in self.geometry:
+            if field not in known:
+                raise InvalidOptimum(path, f"geometry.{field}", "an unknown field", f"one of {', '.join(known)}")
         return kind(kind.Geometry(**{k: tuple(v) if isinstance(v, list) else v for k, v in self.geometry.items()}))
 
 
-def optimum_of(study: Study, synthesis: Synthesis, objective: str, cycle: dict[str, Any]) -> Optimum:
+def optimum_of(outcome: Outcome) -> Optimum:
     """What a run claims."""
+    study, synthesis, objective = outcome.study, outcome.synthesis, outcome.problem.objective
+    figures = {margin: worst.value for margin, worst in outcome.worst.items()}
+    if outcome.prototype is not None:
+        figures["prototype"] = outcome.prototype[objective].value
     return Optimum(
         mechanism=study.mechanism,
-        geometry=synthesis.robot.geometry.as_dict(),
-        figures={
-            "prototype": synthesis.before[objective].value,
-            **{margin: worst.value for margin, worst in synthesis.after.items()},
-        },
-        poses={margin: _plain(worst) for margin, worst in synthesis.after.items()},
-        cycle=cycle,
+        geometry=outcome.robot.geometry.as_dict(),
+        figures=figures,
+        poses={margin: _plain(worst) for margin, worst in outcome.worst.items()},
+        cycle=outcome.timing.figures() if outcome.timing else {},
         made_by={
             "version": version("linkwright"),
             "study_digest": study.digest,
             "seed": study.optimise.seed if study.optimise else 0,
-            "solver_status": synthesis.status,
-            "sampled_poses": synthesis.sampled,
-            "objective": objective,
+            "solver_status": synthesis.status if synthesis else "geometry given by the study",
+            "sampled_poses": outcome.worst[objective].sampled,
+            "characteristic_length": outcome.problem.characteristic_length,
         },
-        active=synthesis.active,
+        active=synthesis.active if synthesis else [],
     )
 
 
@@ -106,21 +119,21 @@ def read_optimum(path: Path) -> Optimum:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InvalidOptimum(path, "TOML", error, "a TOML file in UTF-8") from error
     parts: dict[str, Any] = {}
-    for key, kind in (("mechanism", str), ("geometry", dict), ("figures", dict), ("made_by", dict)):
+    kinds = {"mechanism": str, "geometry": dict, "figures": dict, "made_by": dict, "worst_pose": dict, "cycle": dict}
+    for key, kind in {**kinds, "active": list}.items():
         parts[key] = _of_kind(path, data, key, kind)
     for key, value in parts["figures"].items():
         if not isinstance(value, float | int) or isinstance(value, bool):
             raise InvalidOptimum(path, f"figures.{key}", value, "a number")
-    for key, kind in (("study_digest", str), ("sampled_poses", int), ("objective", str)):
-        _of_kind(path, parts["made_by"], key, kind, "made_by.")
+    _of_kind(path, parts["made_by"], "study_digest", str, "made_by.")
     return Optimum(
         mechanism=parts["mechanism"],
         geometry=parts["geometry"],
         figures=parts["figures"],
-        poses=_of_kind(path, data, "worst_pose", dict),
-        cycle=_of_kind(path, data, "cycle", dict),
+        poses=parts["worst_pose"],
+        cycle=parts["cycle"],
         made_by=parts["made_by"],
-        active=_of_kind(path, data, "active", list),
+        active=parts["active"],
     )
 
 

@@ -18,6 +18,12 @@ from kinematics import Mechanism
 
 Array = np.ndarray
 _COLOURS = ("#0b6e8e", "#d1495b", "#edae49", "#3c7a3f", "#6a4c93", "#8a5a44")
+_LINES = {
+    "base": ("#888888", 1.1),
+    "arm": (_COLOURS[0], 3.5),
+    "platform": (_COLOURS[1], 3.0),
+    "tool": (_COLOURS[2], 2.0),
+}
 _STYLE = {
     "font.size": 9,
     "axes.titlesize": 10,
@@ -74,7 +80,9 @@ def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
             lines = robot.polylines(np.array(robot.home))
             for name, line in lines.items():
                 kind = name.split()[0]
-                colour = {"base": "#888888", "arm": _COLOURS[0], "rods": "#444444", "tool": _COLOURS[2]}.get(kind, _COLOURS[1])
+                colour = {"base": "#888888", "arm": _COLOURS[0], "rods": "#444444", "tool": _COLOURS[2]}.get(
+                    kind, _COLOURS[1]
+                )
                 width = {"arm": 3.5, "platform": 3.0, "tool": 2.0}.get(kind, 1.1)
                 axes.plot(*line.T, color=colour, linewidth=width)
             for edge in region.outline():
@@ -93,7 +101,12 @@ def map_picture(sections: dict[str, Section], title: str, bound: float | None) -
         panels: list[Axes] = list(np.atleast_1d(figure.subplots(1, len(sections), sharey=True)))
         for axes, (label, section) in zip(panels, sections.items(), strict=True):
             mesh = axes.pcolormesh(
-                section.first, section.second, section.worst, cmap="viridis", vmin=everything.min(), vmax=everything.max()
+                section.first,
+                section.second,
+                section.worst,
+                cmap="viridis",
+                vmin=everything.min(),
+                vmax=everything.max(),
             )
             low = float(np.nanmin(section.worst))
             if bound is not None and low < bound < np.nanmax(section.worst):

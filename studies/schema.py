@@ -101,11 +101,11 @@ class Sum(_Model):
 
 
 class Optimise(_Model):
-    """What the synthesis may change: `variables` by geometry field, (low, high) for each entry."""
+    """What the synthesis may change: `variables` by geometry field, (low, high), one for each entry of a tuple."""
 
     seed: Annotated[int, Field(ge=0, lt=2**32), Key("a whole number from 0 to 2^32 - 1")] = 0
     starts: Annotated[int, Field(ge=1, le=10_000), Key("a whole number from 1 to 10000")] = 3
-    variables: Annotated[dict[str, Interval], Field(min_length=1), Table({})]
+    variables: Annotated[dict[str, Interval | tuple[Interval, ...]], Field(min_length=1), Table({})]
     sums: Annotated[tuple[Sum, ...], table_of(Sum, rows=True)] = ()
 
 
@@ -145,21 +145,33 @@ class Limits(_Model):
     acceleration: Annotated[PerJoint | None, Key("a number > 0, or one a joint (rad/s^2, or m/s^2)")] = None
     torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
     jerk: Annotated[PerJoint | None, Key("a number > 0, or one a joint (rad/s^3, or m/s^3)")] = None
+    tool_speed: Annotated[Positive | None, Key("a speed > 0 (m/s)")] = None
+    tool_acceleration: Annotated[Positive | None, Key("an acceleration > 0 (m/s^2)")] = None
 
 
-LAWS = ("toppra", "jerk")
+LAWS = ("toppra",)
+
+
+class Approach(_Model):
+    """What the joints may do on the jerk-limited move from home to the cycle's start."""
+
+    speed: Annotated[PerJoint, Key("a speed > 0, or one a joint", Dimension.JOINT_SPEED)]
+    acceleration: Annotated[PerJoint, Key("a number > 0, or one a joint (rad/s^2, or m/s^2)")]
+    jerk: Annotated[PerJoint, Key("a number > 0, or one a joint (rad/s^3, or m/s^3)")]
 
 
 class Trajectory(_Model):
     """How the cycle is timed, and how its set-points are sampled."""
 
-    law: Annotated[Literal["toppra", "jerk"], Key("one of", choices=LAWS)]
+    law: Annotated[Literal["toppra"], Key("one of", choices=LAWS)]
     grid: Annotated[int, Field(ge=1000, le=1_000_000), Key("a whole number from 1000 to 1000000")] = 2000
     """Points along the path."""
     period: Annotated[Positive, Key("a time > 0 (s)")] = 0.001
     """Of the set-points [s]."""
     cycle: Annotated[Cycle, table_of(Cycle)]
     limits: Annotated[Limits, table_of(Limits)]
+    approach: Annotated[Approach | None, table_of(Approach)] = None
+    """None leaves the approach out."""
 
 
 class Study(_Model):

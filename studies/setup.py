@@ -5,6 +5,7 @@ from __future__ import annotations
 from design import Bounds, Box, Cylinder, Region, Requirement, SumLimit
 from design.nlp import Problem
 from kinematics import FviBounds, Mechanism
+from studies import schema
 from studies.mechanisms import mechanism_class
 from studies.schema import CylinderRegion, Study
 from trajectory import AdeptCycle, Limits
@@ -55,13 +56,11 @@ def problem_of(study: Study) -> Problem:
     )
 
 
-def cycle_of(study: Study) -> AdeptCycle:
-    """The path of the study's `[trajectory.cycle]`."""
-    c = study.trajectory.cycle
-    return AdeptCycle(c.lift, c.span, c.blend, c.turn, c.pick, c.heading)
+def cycle_of(cycle: schema.Cycle) -> AdeptCycle:
+    """The path there."""
+    return AdeptCycle(cycle.lift, cycle.span, cycle.blend, cycle.turn, cycle.pick, cycle.heading)
 
 
-def limits_of(study: Study) -> Limits:
-    """The actuators' limits of the study's `[trajectory.limits]`."""
-    limits = study.trajectory.limits
-    return Limits(limits.speed, limits.acceleration, limits.torque, limits.jerk)
+def limits_of(limits: schema.Limits | schema.Approach) -> Limits:
+    """The limits of the cycle or of the approach."""
+    return Limits(**limits.model_dump())

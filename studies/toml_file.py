@@ -203,4 +203,10 @@ class _Scan:
 
 
 def _unquoted(kind: str, token: str) -> str:
-    return str(tomllib.loads(f"key = {token}")["key"]) if kind == "text" else token
+    """The key that a token spells; a quoted one with a bad escape stays as it is, as the file is no TOML anyway."""
+    if kind != "text":
+        return token
+    try:
+        return str(tomllib.loads(f"key = {token}")["key"])
+    except ValueError:
+        return token
