@@ -110,12 +110,12 @@ class AdeptCycle:
         rates = np.broadcast_to([1 / self.corner_length, 1 / self.corner_length, 1 / self.length], states.shape)
         tangent = evaluate(_tangent_program(), states, rates)
         across, up = self._position(s, *in_corner)
-        poses = [self._placed(across, up, tangent[3][..., 0])]
-        poses[0][..., :3] += self.pick
-        poses[0][..., 3] += self.start_angle
-        for k in range(order):
-            poses.append(self._placed(tangent[k][..., 0], tangent[k][..., 1], tangent[4 + k][..., 0]))
-        return tuple(poses)
+        pose = self._placed(across, up, tangent[3][..., 0])
+        pose[..., :3] += self.pick
+        pose[..., 3] += self.start_angle
+        orders = zip(tangent[:3], tangent[4:], strict=True)
+        derivatives = [self._placed(t[..., 0], t[..., 1], turned[..., 0]) for t, turned in orders]
+        return (pose, *derivatives[:order])
 
     def _position(self, s: Array, first: Array, second: Array) -> tuple[Array, Array]:
         """Distances across and up from the pick, (...,) each [m]; `first` and `second` are how far into the corners."""
