@@ -7,8 +7,8 @@ import numpy as np
 Array = np.ndarray
 
 
-def segment_distances(a: Array, b: Array, c: Array, d: Array) -> Array:
-    """Distance between the segments a-b and c-d, each end (..., 3) [m].
+def segment_distances(one: Array, two: Array) -> Array:
+    """Distance between two segments, each (..., 2, 3) with its ends one a row [m].
 
     The nearest points are either both inside, on the lines' common perpendicular, or one of them is an end: the
     smallest of five candidates is exact for parallel, crossing and degenerate segments too.
@@ -16,6 +16,7 @@ def segment_distances(a: Array, b: Array, c: Array, d: Array) -> Array:
     Returns:
         (...,) [m]; NaN where an end is NaN.
     """
+    (a, b), (c, d) = (np.moveaxis(np.asarray(s, dtype=float), -2, 0) for s in (one, two))
     ends = np.minimum(_point_to_segment(a, c, d), _point_to_segment(b, c, d))
     ends = np.minimum(ends, np.minimum(_point_to_segment(c, a, b), _point_to_segment(d, a, b)))
     return np.fmin(ends, _perpendicular(a, b, c, d))

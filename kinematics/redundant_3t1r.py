@@ -11,6 +11,7 @@ other direction would be turned with the platform at one end and not at the othe
 
 from __future__ import annotations
 
+from functools import cache
 from types import SimpleNamespace
 from typing import ClassVar, NamedTuple
 
@@ -212,11 +213,11 @@ class Redundant3T1R(RodLevel):
         rails, platform = self._evaluate(
             "arms", lambda m: [m.at_pose(self.rail_points(m.joints, m.g)), self.platform_points(m.pose, m.g)], pose
         )
-        ends = np.moveaxis(np.stack([rails, platform], axis=-1), -2, 0)  # (6, ..., 3, 2)
-        half = np.array([0.0, 0.0, self.geometry.parallelogram_width / 2 if rods else 0.0])[:, None]
+        ends = np.moveaxis(np.stack([rails, platform], axis=-1), (-2, -1), (0, -2))  # (6, ..., 2, 3)
+        half = np.array([0.0, 0.0, self.geometry.parallelogram_width / 2])
         lines = [(e - half, e + half) if i in _PARALLELOGRAMS and rods else (e,) for i, e in enumerate(ends)]
         return {
-            (i + 1, j + 1): np.min([_between(one, two) for one in lines[i] for two in lines[j]], axis=0)
+            (i + 1, j + 1): np.min([segment_distances(one, two) for one in lines[i] for two in lines[j]], axis=0)
             for i, j in _APART
         }
 
@@ -228,15 +229,7 @@ class Redundant3T1R(RodLevel):
 
     def _candidates(self, joints: Array) -> tuple[Array, Array, Array]:
         """S_1 to S_4 (..., 4, 4), worst arm-length error (..., 4) and smallest x_bi - x_i (..., 4), both in metres."""
-
-        def build(model: Model) -> Build:
-            poses = candidate_poses(model.joints, model.g)
-            columns = [poses[:, k] for k in range(CANDIDATES)]
-            errors = [ca.mmax(ca.fabs(self.closure(p, model.joints, model.g))) for p in columns]
-            ahead = [ca.mmin(self.platform_points(p, model.g)[0, :].T - model.joints) for p in columns]
-            return [model.joints], [poses.T, ca.vertcat(*errors), ca.vertcat(*ahead)]
-
-        poses, errors, ahead = evaluate(self.program("candidates", build), joints)
+        poses, errors, ahead = evaluate(self.program("candidates", lambda _: _candidate_build()), joints)
         return poses, errors, ahead
 
     def forward(self, joints: Array, tolerance: float = 1e-6) -> Array:
@@ -296,6 +289,11 @@ class Redundant3T1R(RodLevel):
         return check_encoders(self, joints, self.forward_least_squares(joints), accuracy)
 
 
-def _between(one: Array, two: Array) -> Array:
-    """Distance of two lines, each (..., 3, 2) with its ends last."""
-    return segment_distances(one[..., 0], one[..., 1], two[..., 0], two[..., 1])
+@cache
+def _candidate_build() -> Build:
+    model, cls = Redundant3T1R.model(), Redundant3T1R
+    poses = candidate_poses(model.joints, model.g)
+    columns = [poses[:, k] for k in range(CANDIDATES)]
+    errors = [ca.mmax(ca.fabs(cls.closure(p, model.joints, model.g))) for p in columns]
+    ahead = [ca.mmin(cls.platform_points(p, model.g)[0, :].T - model.joints) for p in columns]
+    return [model.joints], [poses.T, ca.vertcat(*errors), ca.vertcat(*ahead)]
