@@ -292,8 +292,7 @@ class Redundant3T1R(RodLevel):
 @cache
 def _candidate_build() -> Build:
     model, cls = Redundant3T1R.model(), Redundant3T1R
-    poses = candidate_poses(model.joints, model.g)
-    columns = [poses[:, k] for k in range(CANDIDATES)]
-    errors = [ca.mmax(ca.fabs(cls.closure(p, model.joints, model.g))) for p in columns]
-    ahead = [ca.mmin(cls.platform_points(p, model.g)[0, :].T - model.joints) for p in columns]
-    return [model.joints], [poses.T, ca.vertcat(*errors), ca.vertcat(*ahead)]
+    poses, ahead = candidate_poses(model.joints, model.g)
+    columns = range(CANDIDATES)
+    errors = [ca.mmax(ca.fabs(cls.closure(poses[:, k], model.joints, model.g))) for k in columns]
+    return [model.joints], [poses.T, ca.vertcat(*errors), ca.vertcat(*(ca.mmin(ahead[:, k]) for k in columns))]

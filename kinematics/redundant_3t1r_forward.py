@@ -17,18 +17,23 @@ import casadi as ca
 CANDIDATES = 4
 
 
-def candidate_poses(joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-    """(4, 4) the poses S_1 to S_4 of (20), one a column; NaN where a line misses its sphere."""
-    poses = []
+def candidate_poses(joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+    """The poses S_1 to S_4 of (20), (4, 4), and their points' x_bi - x_i for (21), (6, 4), one candidate a column.
+
+    NaN where a line misses its sphere.
+    """
+    poses, ahead = [], []
     for first in (1, -1):
         along, y_1, height = _first_point(joints, g, first)
         for third in (1, -1):
             beyond, y_3 = _third_point(joints, g, height, third)
+            x_1, x_3 = joints[0] + along, joints[2] + beyond
             apart = ca.vertcat(joints[2] - joints[0] + beyond - along, y_3 - y_1)
             direction = apart / ca.norm_2(apart)  # (cos theta, sin theta), below (21)
-            centre = ca.vertcat(joints[0] + along, y_1) + g.platform_length / 2 * direction  # (22)
+            centre = ca.vertcat(x_1, y_1) + g.platform_length / 2 * direction  # (22)
             poses.append(ca.vertcat(centre, height, ca.atan2(direction[1], direction[0])))
-    return ca.horzcat(*poses)
+            ahead.append(ca.vertcat(x_1, x_1, x_3, x_3, x_1, x_1) - joints)
+    return ca.horzcat(*poses), ca.horzcat(*ahead)
 
 
 def _first_point(joints: ca.SX, g: SimpleNamespace, branch: int) -> tuple[ca.SX, ca.SX, ca.SX]:
