@@ -228,7 +228,7 @@ class Redundant3T1R(RodLevel):
     # The forward models.
 
     def _candidates(self, joints: Array) -> tuple[Array, Array, Array]:
-        """S_1 to S_4 (..., 4, 4), worst arm-length error (..., 4) and smallest x_bi - x_i (..., 4), both in metres."""
+        """S_1 to S_4 (..., 4, 4), worst error of a length (..., 4) and smallest x_bi - x_i (..., 4), both in metres."""
         poses, errors, ahead = evaluate(self.program("candidates", lambda _: _candidate_build()), joints)
         return poses, errors, ahead
 
@@ -236,8 +236,9 @@ class Redundant3T1R(RodLevel):
         """(..., 6) -> (..., 4), the candidate of (20) that has every slide behind its platform point, (21).
 
         Args:
-            tolerance: by how much an arm may be too long or too short [m]. Joints that no pose has give NaN; infinity
-                gives what the paper's model gives, which never looks at x_6. `forward_least_squares` weighs all six.
+            tolerance: by how much an arm or the platform may be too long or too short [m]. Joints that no pose has give
+                NaN; infinity gives what the paper's model gives, which never looks at x_6; `forward_least_squares`
+                weighs all six.
         """
         poses, errors, ahead = self._candidates(self._joints(joints))
         score = np.fmax(np.where(np.isnan(errors), np.inf, errors), -ahead)
@@ -292,7 +293,7 @@ class Redundant3T1R(RodLevel):
 @cache
 def _candidate_build() -> Build:
     model, cls = Redundant3T1R.model(), Redundant3T1R
-    poses, ahead = candidate_poses(model.joints, model.g)
-    columns = range(CANDIDATES)
-    errors = [ca.mmax(ca.fabs(cls.closure(poses[:, k], model.joints, model.g))) for k in columns]
-    return [model.joints], [poses.T, ca.vertcat(*errors), ca.vertcat(*(ca.mmin(ahead[:, k]) for k in columns))]
+    poses, ahead, excess = candidate_poses(model.joints, model.g)
+    gaps = [ca.vertcat(cls.closure(poses[:, k], model.joints, model.g), excess[k]) for k in range(CANDIDATES)]
+    errors = ca.vertcat(*(ca.mmax(ca.fabs(gap)) for gap in gaps))
+    return [model.joints], [poses.T, errors, ca.vertcat(*(ca.mmin(ahead[:, k]) for k in range(CANDIDATES)))]

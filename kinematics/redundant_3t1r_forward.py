@@ -5,7 +5,7 @@ horizontal plane that B_1 fixes: two circles, two points. Arm 6 and the distance
 a candidate is a pose of the robot only if these two close as well. Everything is written from the slides x_1 and x_3
 on, so that a shift along x costs no digits; with h = z_1 - a/2 nothing but h, y_1 and y_3 is divided by.
 
-B_1 is the intersection of regular spheres wherever all arms reach: n_1 . (n_2 x n_5) has the sign of -y_1 h throughout.
+B_1 is the intersection of regular spheres wherever all arms reach: n_1 . (n_2 x n_5) has the sign of y_1 h throughout.
 """
 
 from __future__ import annotations
@@ -17,23 +17,26 @@ import casadi as ca
 CANDIDATES = 4
 
 
-def candidate_poses(joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
-    """The poses S_1 to S_4 of (20), (4, 4), and their points' x_bi - x_i for (21), (6, 4), one candidate a column.
+def candidate_poses(joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """S_1 to S_4 of (20), one a column; NaN where a line misses its sphere.
 
-    NaN where a line misses its sphere.
+    Returns:
+        Poses (4, 4); x_bi - x_i (6, 4), for (21); how much too far apart B_1 and B_3 are, seen from above (1, 4).
     """
-    poses, ahead = [], []
+    poses, ahead, excess = [], [], []
     for first in (1, -1):
         along, y_1, height = _first_point(joints, g, first)
         for third in (1, -1):
             beyond, y_3 = _third_point(joints, g, height, third)
             x_1, x_3 = joints[0] + along, joints[2] + beyond
             apart = ca.vertcat(joints[2] - joints[0] + beyond - along, y_3 - y_1)
-            direction = apart / ca.norm_2(apart)  # (cos theta, sin theta), below (21)
+            distance = ca.norm_2(apart)
+            direction = apart / distance  # (cos theta, sin theta), below (21)
             centre = ca.vertcat(x_1, y_1) + g.platform_length / 2 * direction  # (22)
             poses.append(ca.vertcat(centre, height, ca.atan2(direction[1], direction[0])))
             ahead.append(ca.vertcat(x_1, x_1, x_3, x_3, x_1, x_1) - joints)
-    return ca.horzcat(*poses), ca.horzcat(*ahead)
+            excess.append(distance - g.platform_length)
+    return ca.horzcat(*poses), ca.horzcat(*ahead), ca.horzcat(*excess)
 
 
 def _first_point(joints: ca.SX, g: SimpleNamespace, branch: int) -> tuple[ca.SX, ca.SX, ca.SX]:
