@@ -21,13 +21,15 @@ from kinematics.model import Model
 
 _LAST_STEP = 1e-9  # squared by the quadratic convergence, it is below rounding [m]
 _MOST_STEPS = 60
+_FREE = 1e-12  # a normalised minor of the Hessian at its minimum, where rounding is all that is left of it
 
 
 class BestFit(NamedTuple):
     """A least-squares forward model's answer.
 
     Attributes:
-        pose: (..., n), NaN where the iteration did not converge to a minimum.
+        pose: (..., n), NaN where the iteration did not converge to a minimum, or the joints that weigh leave a
+            direction free.
         residuals: (..., m) measured joints less the pose's own; NaN with the pose.
         steps: (...,) iterations taken.
     """
@@ -91,8 +93,8 @@ def _iterate(robot: Mechanism, pose: Array, measured: Array, weight: Array) -> t
     size[list(robot.rotations)] = robot.characteristic_length
     converged, steps, damping = np.zeros(count, bool), np.zeros(count, int), np.zeros(count)
     program = robot.program("newton", lambda model: _newton(model))
-    (cost, step, minimum), active = evaluate(program, pose, measured, weight, damping[:, None]), np.arange(count)
-    cost = cost[:, 0]
+    cost, step, _ = evaluate(program, pose, measured, weight, damping[:, None])
+    cost, active = cost[:, 0], np.arange(count)
     for _ in range(_MOST_STEPS):
         active = active[np.isfinite(cost[active])]
         if not active.size:
@@ -105,22 +107,22 @@ def _iterate(robot: Mechanism, pose: Array, measured: Array, weight: Array) -> t
         done = small & (damping[active] == 0.0) & np.isfinite(there)
         moved = active[better | done]
         pose[moved], cost[moved] = trial[better | done], there[better | done]
-        converged[active[done]] = (minimum[active[done]] > 0.0).all(axis=-1)
+        converged[active[done]] = True
         previous = damping[active]
         eased = np.where(previous > 1e-2, previous / 10, 0.0)
         damping[active] = np.where(better, eased, np.maximum(4 * previous, 1e-3))
         active = active[~done]
         if active.size:
-            _, step[active], minimum[active] = evaluate(
-                program, pose[active], measured[active], weight[active], damping[active, None]
-            )
-    return converged, steps
+            step[active] = evaluate(program, pose[active], measured[active], weight[active], damping[active, None])[1]
+    minimum = evaluate(program, pose, measured, weight, damping[:, None])[2]
+    return converged & (minimum > _FREE).all(axis=-1), steps
 
 
 def _newton(model: Model) -> Build:
-    """Cost, the damped step, and the Hessian's leading minors (all positive: a minimum).
+    """Cost, the damped step, and the Hessian's leading minors, each over the product of its diagonal.
 
-    Where the Hessian is not positive definite, its Gauss-Newton part, which is, takes its place.
+    All positive: a minimum; near zero: a direction is free. Where the Hessian is not positive definite, its
+    Gauss-Newton part J^T W J takes its place.
     """
     n, m = model.pose.shape[0], model.joints.shape[0]
     measured, weight = ca.SX.sym("measured", m), ca.SX.sym("weight", m)
@@ -130,10 +132,14 @@ def _newton(model: Model) -> Build:
     hessian, gradient = ca.hessian(cost, model.pose)
     slopes = ca.jacobian(model.inverse, model.pose)
     gauss = slopes.T @ ca.diag(weight) @ slopes
-    minors = ca.vertcat(*(determinant(hessian[:k, :k]) for k in range(1, n + 1)))
-    matrix = ca.if_else(ca.mmin(minors) > 0, hessian, gauss) + damping * ca.diag(ca.diag(gauss))
+    product, minors = ca.SX(1), []
+    for k in range(n):
+        product *= ca.fabs(hessian[k, k])
+        minors.append(determinant(hessian[: k + 1, : k + 1]) / product)
+    definite = ca.mmin(ca.vertcat(*minors)) > 0
+    matrix = ca.if_else(definite, hessian, gauss) + damping * ca.diag(ca.diag(gauss))
     cofactors, det = adjugate(matrix)
-    return [model.pose, measured, weight, damping], [cost, -(cofactors @ gradient) / det, minors]
+    return [model.pose, measured, weight, damping], [cost, -(cofactors @ gradient) / det, ca.vertcat(*minors)]
 
 
 def check_encoders(robot: Mechanism, joints: Array, fit: BestFit, accuracy: float) -> EncoderCheck:

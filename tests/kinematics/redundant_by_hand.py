@@ -159,4 +159,4 @@ def quarter(count=161, top=0.9):
 
 
 def poses_at(nodes, theta):
-    return np.column_stack([np.zeros(len(nodes)), nodes, np.full(len(nodes), theta)])
+    return np.column_stack([np.zeros(len(nodes)), nodes, np.broadcast_to(theta, len(nodes))])
