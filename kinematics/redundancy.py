@@ -21,7 +21,7 @@ from kinematics.model import Model
 
 _LAST_STEP = 1e-9  # squared by the quadratic convergence, it is below rounding [m]
 _MOST_STEPS = 60
-_FREE = 1e-12  # a normalised minor of the Hessian at its minimum, where rounding is all that is left of it
+_FREE = 1e-12  # a normalised minor or singular value of which rounding is all that is left
 
 
 class BestFit(NamedTuple):
@@ -157,8 +157,18 @@ def check_encoders(robot: Mechanism, joints: Array, fit: BestFit, accuracy: floa
     alone = least_squares(robot, joints[..., None, :], fit.pose[..., None, :], 1.0 - np.eye(m))
     cleared = _worst(np.where(np.eye(m, dtype=bool), 0.0, alone.residuals)) > accuracy
     suspects = ~cleared & ~consistent[..., None]
-    best = least_squares(robot, joints, fit.pose, 1.0 - suspects)
-    return EncoderCheck(best.pose, fit.residuals, consistent, suspects)
+    best = least_squares(robot, joints, fit.pose, 1.0 - suspects).pose
+    best[~_determined(robot.inverse_jacobian(best), 1.0 - suspects)] = np.nan
+    return EncoderCheck(best, fit.residuals, consistent, suspects)
+
+
+def _determined(j_m: Array, weights: Array) -> Array:
+    """(...,) whether the joints that weigh fix every freedom: rank n of their rows, columns scaled to one."""
+    rows = j_m * np.sqrt(weights)[..., None]
+    good = np.isfinite(rows).all(axis=(-2, -1))
+    scaled = rows[good] / np.linalg.norm(rows[good], axis=-2, keepdims=True)
+    good[good] = np.linalg.svd(scaled, compute_uv=False)[..., -1] > _FREE
+    return good
 
 
 def _worst(residuals: Array) -> Array:
