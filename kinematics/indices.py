@@ -1,4 +1,6 @@
-"""Performance indices of any mechanism, built on its inverse Jacobian J_m (q' = J_m t).
+"""Performance indices of any mechanism, built on the inverse Jacobian J_m of its actuators (q' = J_m t).
+
+Where drives couple the joints, J_m and q here are the motors': identical limits exist only there.
 
 FVI, v_w and f_w are expressions (39) and (40) of Shayya et al.; J_mw = J_m W^-1 is the homogeneous Jacobian, in which
 a characteristic length turns rotations into lengths.

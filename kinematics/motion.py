@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import casadi as ca
@@ -13,7 +14,7 @@ from kinematics.model import Model
 
 
 class JointMotion(NamedTuple):
-    """Joints and their first three derivatives, each (..., m)."""
+    """Joints (or actuators) and their first three derivatives, each (..., m)."""
 
     position: Array
     first: Array
@@ -30,13 +31,23 @@ def joint_motion(robot: Mechanism, pose: Array, first: Array, second: Array, thi
     Returns:
         Joints and derivatives; NaN rows where a limb cannot reach.
     """
+    return _motion(robot, "joint_motion", lambda model: model.inverse, (pose, first, second, third))
 
+
+def actuator_motion(robot: Mechanism, pose: Array, first: Array, second: Array, third: Array) -> JointMotion:
+    """As `joint_motion`, of the actuators: what their limits bound. The same unless the drives couple joints."""
+    return _motion(robot, "actuator_motion", lambda model: model.drives @ model.inverse, (pose, first, second, third))
+
+
+def _motion(
+    robot: Mechanism, key: str, expression: Callable[[Model], ca.SX], motion: tuple[Array, Array, Array, Array]
+) -> JointMotion:
     def build(model: Model) -> Build:
         rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("first", "second", "third")]
-        return [model.pose, *rates], derivatives_along(model.inverse, model.pose, rates)
+        return [model.pose, *rates], derivatives_along(expression(model), model.pose, rates)
 
-    given = [np.asarray(v, dtype=float) for v in (pose, first, second, third)]
-    return JointMotion(*evaluate(robot.program("joint_motion", build), *np.broadcast_arrays(*given)))
+    given = [np.asarray(v, dtype=float) for v in motion]
+    return JointMotion(*evaluate(robot.program(key, build), *np.broadcast_arrays(*given)))
 
 
 def derivatives_along(expression: ca.SX, variable: ca.SX, rates: list[ca.SX]) -> list[ca.SX]:
