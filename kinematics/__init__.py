@@ -4,8 +4,9 @@ from kinematics.errors import InvalidGeometry, InvalidShape, InvalidValue, Linkw
 from kinematics.heli4 import Heli4
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Mechanism
+from kinematics.peppermill import Peppermill
 
-MECHANISMS: dict[str, type[Mechanism]] = {cls.__name__: cls for cls in (Heli4,)}
+MECHANISMS: dict[str, type[Mechanism]] = {cls.__name__: cls for cls in (Heli4, Peppermill)}
 
 __all__ = [
     "MECHANISMS",
@@ -16,5 +17,6 @@ __all__ = [
     "InvalidValue",
     "LinkwrightError",
     "Mechanism",
+    "Peppermill",
     "UnreachablePose",
 ]

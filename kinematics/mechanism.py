@@ -266,6 +266,9 @@ class Mechanism(ABC):
     def _joints(self, joints: Array) -> Array:
         return _checked(joints, "joints", self.joint_names)
 
+    def _actuators(self, actuators: Array) -> Array:
+        return _checked(actuators, "actuators", self.actuator_names)
+
     @staticmethod
     def _together(first: Array, second: Array) -> tuple[Array, Array]:
         lead = np.broadcast_shapes(first.shape[:-1], second.shape[:-1])
