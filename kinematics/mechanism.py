@@ -262,13 +262,10 @@ class Mechanism(ABC):
         return self._programs[key]
 
     def _poses(self, pose: Array) -> Array:
-        return _checked(pose, "pose", self.pose_names)
+        return checked(pose, "pose", self.pose_names)
 
     def _joints(self, joints: Array) -> Array:
-        return _checked(joints, "joints", self.joint_names)
-
-    def _actuators(self, actuators: Array) -> Array:
-        return _checked(actuators, "actuators", self.actuator_names)
+        return checked(joints, "joints", self.joint_names)
 
     @staticmethod
     def _together(first: Array, second: Array) -> tuple[Array, Array]:
@@ -279,7 +276,12 @@ class Mechanism(ABC):
         )
 
 
-def _checked(values: Array, what: str, names: tuple[str, ...]) -> Array:
+def checked(values: Array, what: str, names: tuple[str, ...]) -> Array:
+    """The values as floats, once their last axis has one item a name.
+
+    Raises:
+        InvalidShape: it has not.
+    """
     array = np.asarray(values, dtype=float)
     if array.ndim == 0 or array.shape[-1] != len(names):
         raise InvalidShape(what, names, array.shape)

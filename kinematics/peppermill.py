@@ -17,12 +17,12 @@ import numpy as np
 
 from kinematics import peppermill_limbs as limbs
 from kinematics.bodies import Bodies
+from kinematics.drives import from_actuators, to_actuators
 from kinematics.errors import InvalidShape
 from kinematics.geometry import TURN, GeometryRecord, length, screw_pitch
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
-from kinematics.linear import adjugate
-from kinematics.mechanism import Array, Build, Mechanism
+from kinematics.mechanism import Array, Mechanism
 from kinematics.model import Model
 
 _E_Z = ca.DM([0, 0, 1])
@@ -47,8 +47,8 @@ class PeppermillGeometry(GeometryRecord):
         super().__post_init__()
         first, second = self.pitches
         if abs(first - second) <= _SAME_PITCH * max(abs(first), abs(second)):
-            expected = "two different pitches: with equal ones det A of (48) is zero in every pose and nothing turns"
-            raise self._invalid("pitches", self.pitches, f"{expected} the platform")
+            reason = "equal ones are an architecture singularity, det A of (48) is zero in every pose"
+            raise self._invalid("pitches", self.pitches, f"two different pitches: {reason}")
         if self.drive_pitch < 0.0:
             raise self._invalid("drive_pitch", self.drive_pitch, "a pitch > 0 m/turn, as (A.2) has it")
 
@@ -153,18 +153,11 @@ class Peppermill(Mechanism):
 
     def motors(self, joints: Array) -> Array:
         """(..., 4) joints [m, m, rad, rad] -> (..., 4) motor angles [rad]; (A.1)-(A.4)."""
-        program = self.program("motors", lambda m: ([m.joints], [m.drives @ m.joints]))
-        return evaluate(program, self._joints(joints))[0]
+        return to_actuators(self, joints)
 
     def from_motors(self, motors: Array) -> Array:
         """(..., 4) motor angles [rad] -> (..., 4) joints; (A.5), whose first row is +- p_c / 4 pi, not / 2 pi."""
-
-        def build(model: Model) -> Build:
-            eta = ca.SX.sym("eta", 4)
-            inverse, det = adjugate(model.drives)
-            return [eta], [inverse @ eta / det]
-
-        return evaluate(self.program("from_motors", build), self._actuators(motors))[0]
+        return from_actuators(self, motors)
 
     # All modes.
 
