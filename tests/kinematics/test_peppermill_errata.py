@@ -4,7 +4,7 @@ import numpy as np
 
 from kinematics import Peppermill
 from kinematics.peppermill_singularities import links
-from tests.kinematics.peppermill_by_hand import TURN, A, ByHand, K, X, Y, assembled, box
+from tests.kinematics.peppermill_by_hand import TURN, A, ByHand, K, X, Y, assembled
 
 GEOMETRY = Peppermill.Geometry((0.22, 0.17), (0.48, 0.61), 0.55, (0.09, -0.13), 0.06)
 HAND = ByHand(GEOMETRY)
@@ -176,10 +176,3 @@ def test_equations_a1_to_a4_agree_and_a5_prints_twice_their_inverse():
             np.testing.assert_allclose(pitch / TURN * (pair[:, k] - theta), d, atol=1e-14)  # (A.1), (A.2)
         np.testing.assert_allclose(pair @ holds.T, np.stack([d, theta], axis=-1), atol=1e-13)
     assert np.abs(robot.from_motors(eta) - joints).max() < 1e-13
-
-
-def test_the_default_box_is_ours_and_the_paper_prints_no_dimension():
-    """All that it prints of the machine's size are ratios: opposite pitches and b_0 either side of the origin."""
-    geometry = Peppermill().geometry
-    assert geometry.pitches[0] == -geometry.pitches[1]
-    assert np.isfinite(Peppermill().inverse(box(1000, seed=3))).all()
