@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinematics import Peppermill
+from kinematics import MECHANISMS, Peppermill
 from tests.kinematics.peppermill_by_hand import TURN, ByHand, assembled, box, faces, random_geometry
 
 ELBOWS = [(1, 1), (1, -1), (-1, 1), (-1, -1)]
@@ -237,3 +237,7 @@ def test_reach_is_the_distance_to_the_ring_and_negative_exactly_where_there_are_
         wanted = np.minimum(near + far - distance, distance - np.abs(near - far)).min(axis=1)
         assert np.abs(robot.margin("reach", poses) - wanted).max() < 1e-14
         np.testing.assert_array_equal(np.isnan(robot.inverse(poses)).any(axis=1), (too_close | too_far).any(axis=1))
+
+
+def test_the_mechanism_is_listed():
+    assert MECHANISMS["Peppermill"] is Peppermill

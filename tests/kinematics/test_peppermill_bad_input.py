@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from kinematics import MECHANISMS, InvalidGeometry, InvalidShape, Peppermill, UnreachablePose
+from kinematics import InvalidGeometry, InvalidShape, Peppermill, UnreachablePose
 
 
 def test_poses_out_of_reach_are_nan_rows_and_named_on_demand():
@@ -65,7 +65,3 @@ def test_equal_pitches_are_refused_as_what_they_are():
     with pytest.raises(InvalidGeometry, match="architecture singularity"):
         Peppermill.Geometry(pitches=(0.1, 0.1))
     Peppermill.Geometry(pitches=(0.1, 0.1 + 1e-6))  # poor, but not singular
-
-
-def test_the_mechanism_is_listed():
-    assert MECHANISMS["Peppermill"] is Peppermill
