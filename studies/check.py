@@ -123,4 +123,4 @@ def _at_least(what: str, bound: float, found: float, pose: list[float]) -> Row:
 
 
 def _pose(pose: list[float] | None) -> str:
-    return "" if pose is None else f"({', '.join(f'{v:.4g}' for v in pose)})"
+    return "" if pose is None else f"({', '.join(f'{round(v, 6) + 0.0:.4g}' for v in pose)})"

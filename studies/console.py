@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 from studies.check import Row
@@ -44,7 +44,12 @@ def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]
     """A table on standard output, never narrower than its contents in a pipe."""
     console = Console()
     table = Table(
-        *(Text(c) for c in columns), title=Text(title), title_justify="left", box=None, pad_edge=False, highlight=False
+        *(Column(Text(c)) for c in columns),
+        title=Text(title),
+        title_justify="left",
+        box=None,
+        pad_edge=False,
+        highlight=False,
     )
     for row in rows:
         table.add_row(*(Text(str(cell)) for cell in row))
@@ -144,7 +149,7 @@ def _print_files(files: list[Path]) -> None:
 
 
 def _pose(pose: Iterable[float]) -> str:
-    return f"({', '.join(f'{v:.4g}' for v in pose)})"
+    return f"({', '.join(f'{round(v, 6) + 0.0:.4g}' for v in pose)})"
 
 
 def _plain(value: Any) -> Any:

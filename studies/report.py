@@ -71,7 +71,9 @@ def _margin_rows(outcome: Outcome) -> list[tuple[str, str, str, str, str]]:
             wanted.get(margin, ""),
             f"{outcome.prototype[margin].value:.6f}" if outcome.prototype else "",
             f"{worst.value:.6f}",
-            ", ".join(f"{n} {v:.4g}" for n, v in zip(outcome.robot.pose_names, worst.pose, strict=True)),
+            ", ".join(
+                f"{n} {round(v, 6) + 0.0:.4g}" for n, v in zip(outcome.robot.pose_names, worst.pose, strict=True)
+            ),
         )
         for margin, worst in outcome.worst.items()
     ]
