@@ -86,6 +86,7 @@ def optimise(study: Study, progress: Progress) -> Synthesis:
         setup.region_of(study),
         seed=study.optimise.seed if study.optimise else 0,
         starts=study.optimise.starts if study.optimise else 1,
+        about=study.dense_sample,
         progress=progress,
     )
 
@@ -109,8 +110,11 @@ def time_cycle(asked: schema.Trajectory, robot: Mechanism) -> Timing:
     return Timing(cycle, points, approach, seconds)
 
 
-def run(study: Study, robot: Mechanism | None, progress: Progress) -> Outcome:
-    """All stages; with a robot given (a committed optimum), its geometry stands and nothing is optimised."""
+def run(study: Study, robot: Mechanism | None, progress: Progress, compare_cycles: bool = True) -> Outcome:
+    """All stages; with a robot given (a committed optimum), its geometry stands and nothing is optimised.
+
+    `compare_cycles` times the prototype's cycle too.
+    """
     problem, region = setup.problem_of(study), setup.region_of(study)
     synthesis: Synthesis | None = None
     before: dict[str, WorstPoses] | None = None
@@ -120,13 +124,13 @@ def run(study: Study, robot: Mechanism | None, progress: Progress) -> Outcome:
     else:
         robot = robot or problem.robot
         progress("worst poses")
-        worst = worst_of(problem, robot, region)
+        worst = worst_of(problem, robot, region, study.dense_sample)
         if robot.geometry != problem.robot.geometry:
-            before = worst_of(problem, problem.robot, region)
+            before = worst_of(problem, problem.robot, region, study.dense_sample)
     timing = prototype_timing = None
     if study.trajectory is not None:
         progress("cycle")
         timing = time_cycle(study.trajectory, robot)
-        if before is not None:
+        if before is not None and compare_cycles:
             prototype_timing = time_cycle(study.trajectory, problem.robot)
     return Outcome(study, problem, region, robot, synthesis, worst, before, timing, prototype_timing)
