@@ -102,7 +102,7 @@ def test_a_run_writes_optimum_report_and_set_points_and_says_so(
     assert ended.returncode == 0, ended.stderr
     data = json.loads(ended.stdout)
     assert data["worst"]["fvi"]["value"] > data["prototype"]["fvi"]
-    assert {Path(f).name for f in data["files"]} == {"optimum.toml", "report.html", "cycle.csv"}
+    assert {Path(f).name for f in data["files"]} == {"optimum.toml", "report.html", "mechanism.png", "cycle.csv"}
     assert (folder / "optimum.toml").read_text() == (folder / "out" / "optimum.toml").read_text()
     points = read_setpoints(folder / "out" / "cycle.csv")
     np.testing.assert_allclose(np.diff(points.time), 0.002, rtol=1e-9)
