@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from design.nlp import Problem
@@ -85,6 +86,7 @@ def optimise(study: Study, progress: Progress) -> Synthesis:
         setup.region_of(study),
         seed=study.optimise.seed if study.optimise else 0,
         starts=study.optimise.starts if study.optimise else 1,
+        about=study.dense_sample,
         progress=progress,
     )
 
@@ -97,10 +99,7 @@ def time_cycle(asked: schema.Trajectory, robot: Mechanism) -> Timing:
     started = time.perf_counter()
     path, limits, payload = setup.cycle_of(asked.cycle), setup.limits_of(asked.limits), asked.cycle.payload
 
-    def law(*given: Any) -> Any:
-        return time_optimal(*given, intervals=asked.grid)
-
-    cycle = there_and_back(robot, path, limits, payload, law)
+    cycle = there_and_back(robot, path, limits, payload, partial(time_optimal, intervals=asked.grid))
     seconds = time.perf_counter() - started
     points = cycle_setpoints(cycle, asked.period, robot.joint_units)
     approach = None
@@ -111,22 +110,27 @@ def time_cycle(asked: schema.Trajectory, robot: Mechanism) -> Timing:
     return Timing(cycle, points, approach, seconds)
 
 
-def run(study: Study, robot: Mechanism | None, progress: Progress) -> Outcome:
-    """All stages; with a robot given (a committed optimum), its geometry stands and nothing is optimised."""
+def run(study: Study, robot: Mechanism | None, progress: Progress, compare_cycles: bool = True) -> Outcome:
+    """All stages; with a robot given (a committed optimum), its geometry stands and nothing is optimised.
+
+    `compare_cycles` times the prototype's cycle too.
+    """
     problem, region = setup.problem_of(study), setup.region_of(study)
-    synthesis = None
+    synthesis: Synthesis | None = None
+    before: dict[str, WorstPoses] | None = None
     if robot is None and study.optimise is not None:
         synthesis = optimise(study, progress)
         robot, worst, before = synthesis.robot, synthesis.after, synthesis.before
     else:
         robot = robot or problem.robot
         progress("worst poses")
-        worst = worst_of(problem, robot, region)
-        before = worst_of(problem, problem.robot, region) if robot.geometry != problem.robot.geometry else None
+        worst = worst_of(problem, robot, region, study.dense_sample)
+        if robot.geometry != problem.robot.geometry:
+            before = worst_of(problem, problem.robot, region, study.dense_sample)
     timing = prototype_timing = None
     if study.trajectory is not None:
         progress("cycle")
         timing = time_cycle(study.trajectory, robot)
-        if before is not None:
+        if before is not None and compare_cycles:
             prototype_timing = time_cycle(study.trajectory, problem.robot)
     return Outcome(study, problem, region, robot, synthesis, worst, before, timing, prototype_timing)

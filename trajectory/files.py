@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 from kinematics.errors import LinkwrightError
@@ -17,7 +18,7 @@ class CannotWrite(LinkwrightError):
         super().__init__(f"{path}: cannot write: {reason}")
 
 
-def write_files(folder: Path, files: dict[str, str | bytes]) -> list[Path]:
+def write_files(folder: Path, files: Mapping[str, str | bytes]) -> list[Path]:
     """Write all files into a folder; each replaces its predecessor at once, and none is touched if one cannot be made.
 
     Raises:
@@ -36,7 +37,8 @@ def write_files(folder: Path, files: dict[str, str | bytes]) -> list[Path]:
         for temporary, target in prepared:
             os.replace(temporary, target)
     except OSError as error:
+        raise CannotWrite(folder, error.strerror or str(error)) from error
+    finally:
         for temporary, _ in prepared:
             Path(temporary).unlink(missing_ok=True)
-        raise CannotWrite(folder, error.strerror or str(error)) from error
     return [target for _, target in prepared]
