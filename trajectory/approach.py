@@ -74,6 +74,8 @@ def plan_approach(
     asked = {**limits.as_dict(), "period": period, "start": ends[0].tolist(), "target": ends[1].tolist()}
     plan = _plan(joints, limits, period, asked)
     count = round(plan.duration / period)
+    if abs(count * period - plan.duration) > _ROUNDING * period:
+        raise TimingFailed("ruckig", asked, f"{plan.duration} s is no whole number of periods")
     times = np.arange(count * PARTS + 1) * (period / PARTS)
     dense = _samples(plan, np.minimum(times, plan.duration))
     pose = _poses(robot, dense[0], times, asked)
@@ -83,8 +85,9 @@ def plan_approach(
     if over:
         raise LimitsExceeded(over, 1.0)
     table = np.concatenate([times[:, None], pose, *dense, torque], axis=1)[::PARTS]
-    header = {**asked, "mechanism": type(robot).__name__, "geometry hash": robot.geometry.digest}
-    header |= {"law": "ruckig", "payload [kg]": payload, "period [s]": period, "periods": [count]}
+    header: dict[str, object] = {"mechanism": type(robot).__name__, "geometry hash": robot.geometry.digest}
+    header |= {"law": "ruckig", "payload [kg]": payload, "period [s]": float(period), "periods": [count]}
+    header |= {f"limit {name}": value for name, value in limits.as_dict().items()}
     setpoints = Setpoints.of_table(table, robot.joint_names, joint_units, header)
     return Approach(setpoints, count * period, found)
 
