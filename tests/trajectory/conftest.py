@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kinematics import Heli4
-from trajectory import AdeptCycle, Cycle, Limits, TimeLaw, there_and_back, time_optimal
+from trajectory import AdeptCycle, Cycle, Limits, Path, TimeLaw, there_and_back, time_optimal
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,32 @@ class Straight:
 
     def as_dict(self) -> dict[str, object]:
         return {"length": self.length}
+
+
+@dataclass(frozen=True)
+class Joined:
+    """One path after another."""
+
+    first: Path
+    second: Path
+
+    @property
+    def length(self) -> float:
+        return self.first.length + self.second.length
+
+    def evaluate(self, s: np.ndarray, order: int = 3) -> tuple[np.ndarray, ...]:
+        in_first = (s <= self.first.length)[..., None]
+        first = self.first.evaluate(np.minimum(s, self.first.length), order)
+        second = self.second.evaluate(np.clip(s - self.first.length, 0.0, self.second.length), order)
+        return tuple(np.where(in_first, a, b) for a, b in zip(first, second, strict=True))
+
+    def as_dict(self) -> dict[str, object]:
+        return {}
+
+
+@pytest.fixture(scope="session")
+def joined() -> type[Joined]:
+    return Joined
 
 
 @pytest.fixture(scope="session")

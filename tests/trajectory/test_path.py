@@ -12,27 +12,6 @@ from trajectory import AdeptCycle, Path, Reversed, RoughPath, require_smooth
 
 
 @dataclass(frozen=True)
-class Joined:
-    """One path after another."""
-
-    first: Path
-    second: Path
-
-    @property
-    def length(self) -> float:
-        return self.first.length + self.second.length
-
-    def evaluate(self, s: np.ndarray, order: int = 3) -> tuple[np.ndarray, ...]:
-        in_first = (s <= self.first.length)[..., None]
-        first = self.first.evaluate(np.minimum(s, self.first.length), order)
-        second = self.second.evaluate(np.clip(s - self.first.length, 0.0, self.second.length), order)
-        return tuple(np.where(in_first, a, b) for a, b in zip(first, second, strict=True))
-
-    def as_dict(self) -> dict[str, object]:
-        return {}
-
-
-@dataclass(frozen=True)
 class Rescaled:
     """A path by another parameter than its arc length."""
 
@@ -63,15 +42,15 @@ def test_the_cycle_is_smooth_at_any_usual_blend(blend: float) -> None:
     require_smooth(Reversed(path), np.linspace(0.0, path.length, 2001))
 
 
-def test_a_reversal_within_the_path_is_refused_at_its_place(path: AdeptCycle) -> None:
-    error = refused(Joined(path, Reversed(path)))
+def test_a_reversal_within_the_path_is_refused_at_its_place(joined: type, path: AdeptCycle) -> None:
+    error = refused(joined(path, Reversed(path)))
     assert error.found == pytest.approx(2.0, abs=1e-6)
     assert error.at == pytest.approx(path.length, abs=1e-3)
 
 
-def test_a_sharp_corner_is_refused(straight: type) -> None:
+def test_a_sharp_corner_is_refused(joined: type, straight: type) -> None:
     up = straight()
-    error = refused(Joined(up, straight((0.0, 0.0, -0.7, 0.0), (1.0, 0.0, 0.0, 0.0))))
+    error = refused(joined(up, straight((0.0, 0.0, -0.7, 0.0), (1.0, 0.0, 0.0, 0.0))))
     assert error.found == pytest.approx(math.sqrt(2), abs=1e-9)
     assert error.at == pytest.approx(up.length, abs=1e-3)
 
@@ -82,9 +61,9 @@ def test_a_corner_too_sharp_for_the_grid_is_refused_until_the_grid_is_finer(path
     require_smooth(sharp, np.linspace(0.0, sharp.length, 8001))
 
 
-def test_a_jump_of_the_turning_is_refused(straight: type) -> None:
+def test_a_jump_of_the_turning_is_refused(joined: type, straight: type) -> None:
     turning = straight((0.0, 0.0, -0.8, 0.0), (0.0, 0.0, 1.0, 3.0))
-    assert "theta" in refused(Joined(turning, straight((0.0, 0.0, -0.7, 0.3)))).what
+    assert "theta" in refused(joined(turning, straight((0.0, 0.0, -0.7, 0.3)))).what
 
 
 def test_a_parameter_that_is_not_arc_length_is_refused(path: AdeptCycle) -> None:

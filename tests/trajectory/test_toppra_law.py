@@ -55,15 +55,16 @@ def test_joint_speed_alone_is_saturated_along_the_way(robot: Heli4, path: AdeptC
     assert (np.abs(rates) / [3.0, 4.0, 5.0, 6.0]).max(axis=-1) == pytest.approx(1.0, abs=1e-3)
 
 
-def test_some_limit_is_reached_at_every_instant(robot: Heli4, path: AdeptCycle, limits: Limits, law: TimeLaw) -> None:
-    """A time-optimal law on a fixed path is always on the edge of what it may."""
+def test_some_limit_is_reached_at_every_instant(robot: Heli4, path: AdeptCycle, law: TimeLaw) -> None:
+    """A time-optimal law on a fixed path is always on the edge of what it may, but for the grid and the switches."""
     along = law.at(np.linspace(0.0, law.duration, 2001)[1:-1])
     pose, first, second = path.evaluate(along.position, 2)
     v, a = along.speed[:, None], along.acceleration[:, None]
     torque = inverse_dynamics(robot, 1.0, pose, first * v, second * v**2 + first * a)
     rates = np.einsum("kij,kj->ki", robot.inverse_jacobian(pose), first * v)
     used = np.maximum(np.abs(torque).max(axis=-1) / 127.0, np.abs(rates).max(axis=-1) / 20.0)
-    assert np.quantile(used, 0.02) > 0.99
+    assert np.quantile(used, 0.02) > 0.98
+    assert np.quantile(used, 0.5) > 0.999
     assert used.max() < 1.001
 
 

@@ -3,14 +3,26 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from kinematics import Heli4, InvalidValue
 from kinematics.dynamics import GRAVITY
-from trajectory import AdeptCycle, Limits, LimitsExceeded, Repaired, TimeLaw, motion_along, pose_motion, repair, verify
+from trajectory import (
+    AdeptCycle,
+    Limits,
+    LimitsExceeded,
+    Repaired,
+    Reversed,
+    TimeLaw,
+    motion_along,
+    pose_motion,
+    repair,
+    verify,
+)
+from trajectory.verification import sampling
 
 
 @pytest.fixture(scope="module")
@@ -27,6 +39,14 @@ def smooth(path: AdeptCycle) -> TimeLaw:
     s = j * quarter**3 * np.array([0, 1 / 6, 1, 11 / 6, 2])
     v = j * quarter**2 * np.array([0, 0.5, 1, 0.5, 0])
     return TimeLaw("smooth", t, s, v, j * quarter * np.array([0, 1, 0, -1]), j * np.array([1, -1, -1, 1]))
+
+
+@pytest.fixture(scope="module")
+def lopsided(path: AdeptCycle) -> TimeLaw:
+    """Slow to start and quick to stop, so that not all joints have one peak."""
+    s = np.linspace(0.0, path.length, 401)
+    x = np.minimum(s / 0.9, (path.length - s) / 0.1)
+    return TimeLaw.constant_acceleration("lopsided", s, np.sqrt(x))
 
 
 def test_speed_and_acceleration_agree_with_finite_differences_of_the_inverse_model(
@@ -122,9 +142,7 @@ def test_the_root_mean_square_torque_is_over_nine_tenths_of_the_peak(repaired: R
     assert repaired.verification.rms_over_peak.max() > 0.9
 
 
-def test_the_root_mean_square_is_the_mean_over_time(
-    robot: Heli4, path: AdeptCycle, limits: Limits, repaired: Repaired
-) -> None:
+def test_the_root_mean_square_is_the_mean_over_time(robot: Heli4, path: AdeptCycle, repaired: Repaired) -> None:
     t = (np.arange(200000) + 0.5) / 200000 * repaired.law.duration
     torque = motion_along(robot, path, repaired.law.at(t), 1.0).torque
     assert repaired.verification.rms_torque == pytest.approx(np.sqrt((torque**2).mean(axis=0)), rel=1e-5)
@@ -142,32 +160,17 @@ def test_a_heavier_payload_than_was_timed_fails(
     assert verify(robot, path, repaired.law, limits, 1.1).failures.keys() == {"torque"}
 
 
-def test_a_law_for_other_axes_fails(robot: Heli4, path: AdeptCycle, limits: Limits, repaired: Repaired) -> None:
+def test_a_law_for_other_axes_fails(robot: Heli4, limits: Limits, repaired: Repaired) -> None:
     swapped = AdeptCycle.centred((0.05, 0.0, -0.8), heading=math.pi / 2)
     assert not verify(robot, swapped, repaired.law, limits, 1.0).ok
 
 
-def test_limits_of_swapped_joints_fail(robot: Heli4, path: AdeptCycle) -> None:
-    free = verify(robot, path, TimeLawOf(path).law, Limits(speed=1e6), 1.0)
-    assert free.ok
-    peaks = np.abs(motion_along(robot, path, TimeLawOf(path).law.within(np.linspace(0, 1, 11))[1], 1.0).joints.first)
-    own = peaks.max(axis=(0, 1)) * 1.0001
-    assert verify(robot, path, TimeLawOf(path).law, Limits(speed=tuple(own)), 1.0).ok
-    found = verify(robot, path, TimeLawOf(path).law, Limits(speed=tuple(own[[2, 3, 0, 1]])), 1.0)
+def test_limits_of_swapped_joints_fail(robot: Heli4, path: AdeptCycle, lopsided: TimeLaw) -> None:
+    motion = motion_along(robot, path, lopsided.within(np.linspace(0, 1, 11))[1], 1.0)
+    own = np.abs(motion.joints.first).max(axis=(0, 1)) * 1.0001
+    assert verify(robot, path, lopsided, Limits(speed=own), 1.0).ok
+    found = verify(robot, path, lopsided, Limits(speed=own[[2, 3, 0, 1]]), 1.0)
     assert found.failures.keys() == {"joint speed"}
-
-
-@dataclass(frozen=True)
-class TimeLawOf:
-    """An asymmetric law, so that no two pairs of joints have one peak."""
-
-    path: AdeptCycle
-
-    @property
-    def law(self) -> TimeLaw:
-        s = np.linspace(0.0, self.path.length, 401)
-        x = np.minimum(s / 0.9, (self.path.length - s) / 0.1)
-        return TimeLaw.constant_acceleration("asymmetric", s, np.sqrt(x))
 
 
 def test_a_pose_out_of_reach_fails_with_its_margin(
@@ -198,6 +201,36 @@ def test_one_nan_anywhere_fails(
     assert math.isnan(found.failures["torque"])
     with pytest.raises(LimitsExceeded):
         repair(robot, path, repaired.law, free, 1.0)
+
+
+@pytest.mark.parametrize("intervals", [500, 501])
+def test_a_cusp_passed_at_speed_fails_on_a_knot_and_between_knots(
+    robot: Heli4, straight: type, joined: type, intervals: int
+) -> None:
+    up = straight()
+    there_and_back = joined(up, Reversed(up))
+    s = np.linspace(0.0, there_and_back.length, intervals + 1)
+    law = TimeLaw.constant_acceleration("through", s, np.sqrt(np.minimum(s, s[-1] - s)))
+    found = verify(robot, there_and_back, law, Limits(speed=20.0), 1.0)
+    assert found.failures["integral of acceleration"] > 1e4
+
+
+def test_derivatives_that_are_not_the_path_s_fail(
+    robot: Heli4, path: AdeptCycle, limits: Limits, repaired: Repaired, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    exact = AdeptCycle.evaluate
+    for order, what in ((1, "integral of speed"), (2, "integral of acceleration")):
+
+        def wrong(self: AdeptCycle, s: np.ndarray, k: int = 3, order: int = order) -> tuple[np.ndarray, ...]:
+            return tuple(d * (0.999 if n == order else 1.0) for n, d in enumerate(exact(self, s, k)))
+
+        monkeypatch.setattr(AdeptCycle, "evaluate", wrong)
+        assert what in verify(robot, path, repaired.law, limits, 1.0).failures
+
+
+def test_a_law_of_few_intervals_is_sampled_as_densely(smooth: TimeLaw) -> None:
+    steps = np.diff(smooth.within(sampling(smooth))[1].position, axis=1)
+    assert steps.max() < 2.5e-4 * smooth.position[-1]
 
 
 def test_an_end_that_is_not_at_rest_fails(robot: Heli4, path: AdeptCycle) -> None:
