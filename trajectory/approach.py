@@ -53,7 +53,7 @@ def plan_approach(
     """The fastest jerk-limited move of the joints to a pose, sampled each period.
 
     Args:
-        robot: any mechanism.
+        robot: any mechanism with as many joints as freedoms.
         target: (n,) the pose to reach, such as a cycle's start.
         limits: speed, acceleration and jerk are kept by the plan; torque is checked where given.
         payload: mass at the tool [kg].
@@ -62,12 +62,12 @@ def plan_approach(
         start: (n,) the pose to start from; the robot's home when None.
 
     Raises:
-        InvalidValue: no acceleration or jerk limit, a tool limit, or an impossible period.
+        InvalidValue: a redundant robot, no acceleration or jerk limit, a tool limit, or an impossible period.
         UnreachablePose: start or target.
         TimingFailed: ruckig reports anything but success, or a pose on the way does not exist.
         LimitsExceeded: a limit is broken on the way.
     """
-    _require_usable(limits, period)
+    _require_usable(robot, limits, period)
     ends = np.stack([np.asarray(robot.home if start is None else start, dtype=float), np.asarray(target, dtype=float)])
     robot.require_reachable(ends)
     joints = robot.inverse(ends)
@@ -92,7 +92,10 @@ def plan_approach(
     return Approach(setpoints, count * period, found)
 
 
-def _require_usable(limits: Limits, period: float) -> None:
+def _require_usable(robot: Mechanism, limits: Limits, period: float) -> None:
+    if len(robot.joint_names) != len(robot.pose_names):
+        expected = f"{len(robot.pose_names)}, as many as freedoms: redundant joints cannot move freely of each other"
+        raise InvalidValue(f"joints of {type(robot).__name__} for an approach", len(robot.joint_names), expected)
     for name in ("tool_speed", "tool_acceleration"):
         if getattr(limits, name) is not None:
             raise InvalidValue(f"Limits {name} for an approach", getattr(limits, name), "None: it moves the joints")

@@ -131,3 +131,11 @@ def test_a_pose_that_does_not_exist_on_the_way_is_an_error(target: np.ndarray, s
 
     with pytest.raises(TimingFailed, match=what):
         plan_approach(Broken(), target, LIMITS, 1.0, 1e-3, UNITS)
+
+
+def test_a_redundant_robot_is_refused(target: np.ndarray) -> None:
+    class Redundant(Heli4):
+        joint_names = ("q1", "q2", "q3", "q4", "q5")
+
+    with pytest.raises(InvalidValue, match="joints of Redundant"):
+        plan_approach(Redundant(), target, LIMITS, 1.0, 1e-3, UNITS)

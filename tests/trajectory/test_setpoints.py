@@ -50,6 +50,7 @@ def test_each_way_is_the_next_whole_number_of_periods(cycle: Cycle, setpoints: S
     assert setpoints.header["periods"] == [128, 128]
     assert whole.duration == pytest.approx(0.256, rel=1e-12)
     assert all(piece.timed.factor >= 1 and piece.timed.verification.ok for piece in whole.pieces)
+    assert [piece.timed.verification.duration for piece in whole.pieces] == pytest.approx([0.128, 0.128])
     assert np.abs(np.diff(setpoints.time) - PERIOD).max() < 1e-15
 
 
