@@ -73,8 +73,8 @@ def plan_approach(
     joints = robot.inverse(ends)
     asked = {**limits.as_dict(), "period": period, "start": ends[0].tolist(), "target": ends[1].tolist()}
     plan = _plan(joints, limits, period, asked)
-    count = round(plan.duration / period)
-    if abs(count * period - plan.duration) > _ROUNDING * period:
+    count = max(1, round(plan.duration / period))  # a period at rest where the target is the start
+    if plan.duration > 0.0 and abs(count * period - plan.duration) > _ROUNDING * period:
         raise TimingFailed("ruckig", asked, f"{plan.duration} s is no whole number of periods")
     times = np.arange(count * PARTS + 1) * (period / PARTS)
     dense = _samples(plan, np.minimum(times, plan.duration))

@@ -74,6 +74,13 @@ def test_it_can_start_elsewhere(robot: Heli4, target: np.ndarray) -> None:
     assert found.setpoints.pose[0] == pytest.approx(start, abs=1e-9)
 
 
+def test_where_the_target_is_the_start_it_rests_for_a_period(robot: Heli4) -> None:
+    found = plan_approach(robot, np.array(robot.home), LIMITS, 1.0, 1e-3, UNITS)
+    assert found.duration == 1e-3
+    assert np.abs(found.setpoints.speed).max() == 0.0
+    assert found.setpoints.pose == pytest.approx(np.tile(robot.home, (2, 1)), abs=1e-9)
+
+
 def test_its_set_points_are_written_and_read(tmp_path_factory: pytest.TempPathFactory, approach: Approach) -> None:
     file = tmp_path_factory.mktemp("approach") / "approach.csv"
     write(file, approach.setpoints)
