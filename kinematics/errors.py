@@ -6,7 +6,12 @@ from collections.abc import Sequence
 
 
 class LinkwrightError(Exception):
-    """Base of every error that Linkwright raises on purpose."""
+    """Base of every error that Linkwright raises on purpose.
+
+    `exit_status` is the command line's: 2 where the input is wrong, 1 where a requirement fails.
+    """
+
+    exit_status = 2
 
 
 class InvalidGeometry(LinkwrightError):

@@ -76,6 +76,7 @@ class Heli4(RodLevel):
     inertia: Heli4Inertia
     pose_names = ("x", "y", "z", "theta")
     joint_names = ("q1", "q2", "q3", "q4")
+    joint_units = ("rad",) * 4
     rotations = (3,)
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.7, 0.0)
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=150.0)
@@ -167,7 +168,7 @@ class Heli4(RodLevel):
 
     @staticmethod
     def rod_closure(pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(8,) rods 11, 12, 21, ... 42; (47). The plates turn by theta + epsilon and the upper one climbs by -p epsilon_2.
+        """(8,) rods 11, 12, 21, ... 42; (47). The plates turn by theta + epsilon, the upper one climbs by -p epsilon_2.
 
         The paper's (49), (53) and (54) print the opposite sign for p, against its own (6).
         """
@@ -211,6 +212,26 @@ class Heli4(RodLevel):
         )
         bodies.of_pose.rotors.append((i.tool, pose[3]))
         return bodies
+
+    @staticmethod
+    def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
+        """Actuators' circle, arms, both rods of each limb, the two plates and the tool."""
+        _, axis = Heli4.directions(g)
+        base, arms = Heli4.actuator_points(g), Heli4.arm_points(joints, g)
+        platform, half = Heli4.platform_points(pose, g), g.parallelogram_width / 2 * axis
+        order = [0, 2, 1, 3, 0]
+        lines = {"base": base[:, order]}
+        for i in range(4):
+            lines[f"arm {i + 1}"] = ca.horzcat(base[:, i], arms[:, i])
+            lines[f"rods {i + 1}"] = ca.horzcat(
+                arms[:, i] - half[:, i], platform[:, i] - half[:, i], platform[:, i] + half[:, i],
+                arms[:, i] + half[:, i], arms[:, i] - half[:, i],
+            )  # fmt: skip
+        lines["platform lower"] = platform[:, [0, 1]]
+        lines["platform upper"] = platform[:, [2, 3]]
+        pointer = pose[:3] + g.platform_radius * ca.vertcat(ca.cos(pose[3]), ca.sin(pose[3]), 0)
+        lines["tool"] = ca.horzcat(platform[:, 0:2] @ ca.DM([0.5, 0.5]), pose[:3], pointer)
+        return lines
 
     # The forward model.
 

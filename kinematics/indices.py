@@ -42,8 +42,8 @@ def isotropic_components(j_mw: ca.SX) -> tuple[ca.SX, ca.SX]:
     """Isotropic speed and force that each actuator alone would allow, for unit joint speed and effort.
 
     Their minima are v_w, the radius of the largest sphere in the polytope of velocities, and f_w, the same for forces
-    with the minimum-norm joint efforts (40). The pseudo-inverse goes through adjugates, so a singular pose gives f_w = 0
-    and not NaN.
+    with the minimum-norm joint efforts (40). The pseudo-inverse goes through adjugates, so a singular pose gives
+    f_w = 0 and not NaN.
 
     Args:
         j_mw: (m, n) homogeneous inverse Jacobian, m >= n.

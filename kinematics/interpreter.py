@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 
 import casadi as ca
 import numba
@@ -46,8 +47,7 @@ def evaluate(program: Program, *inputs: np.ndarray) -> list[np.ndarray]:
     else:
         edges = np.linspace(0, count, threads + 1).astype(int)
         with ThreadPoolExecutor(threads) as pool:
-            spans = zip(edges[:-1], edges[1:], strict=True)
-            list(pool.map(lambda span: _run(program, table[span[0] : span[1]], out[span[0] : span[1]]), spans))
+            list(pool.map(lambda span: _run(program, table[slice(*span)], out[slice(*span)]), pairwise(edges)))
     results, start = [], 0
     for rows, cols in program.outputs:
         part = out[:, start : start + rows * cols]

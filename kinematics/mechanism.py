@@ -37,6 +37,7 @@ class Mechanism(ABC):
     Inertia: ClassVar[type]  # a frozen dataclass of masses, with defaults
     pose_names: ClassVar[tuple[str, ...]]
     joint_names: ClassVar[tuple[str, ...]]
+    joint_units: ClassVar[tuple[str, ...]]  # rad or m
     rotations: ClassVar[tuple[int, ...]]  # which pose coordinates are angles
     home: ClassVar[tuple[float, ...]]  # a pose well inside the workspace
     fvi_bounds: ClassVar[FviBounds]
@@ -75,6 +76,11 @@ class Mechanism(ABC):
     @abstractmethod
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
         """The masses that the joints and the pose move; `payload` [kg] sits at the tool."""
+
+    @staticmethod
+    @abstractmethod
+    def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
+        """Named polylines (3, k) that draw the mechanism: base, arms, rods, platform."""
 
     @staticmethod
     def joint_cosines_and_sines(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX] | None:  # noqa: ARG004
@@ -189,6 +195,14 @@ class Mechanism(ABC):
         for i in range(normalised.shape[0]):
             result *= normalised[i]
         return result
+
+    def polylines(self, pose: Array) -> dict[str, Array]:
+        """Named polylines (k, 3) of the mechanism at one pose (n,), for drawing."""
+        lines = self._evaluate(
+            "skeleton", lambda m: [m.at_pose(p) for p in self.skeleton(m.pose, m.joints, m.g).values()], pose
+        )
+        model = self.model()
+        return dict(zip(self.skeleton(model.pose, model.joints, model.g), (p.T for p in lines), strict=True))
 
     def require_reachable(self, pose: Array) -> None:
         """Check every pose.

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from trajectory.adept import AdeptCycle
 from trajectory.cycle import Cycle, Piece, there_and_back
 from trajectory.errors import LimitsExceeded, RoughPath, SetpointFileError, TimingFailed
+from trajectory.files import CannotWrite, write_files
 from trajectory.limits import Limits
 from trajectory.motion import Motion, PoseMotion, motion_along, pose_motion
 from trajectory.path import Path, Reversed, require_smooth
@@ -40,6 +41,7 @@ def __getattr__(name: str) -> Any:
 __all__ = [
     "AdeptCycle",
     "Approach",
+    "CannotWrite",
     "Cycle",
     "Limits",
     "LimitsExceeded",
@@ -67,5 +69,6 @@ __all__ = [
     "there_and_back",
     "time_optimal",
     "verify",
+    "write_files",
     "write_setpoints",
 ]

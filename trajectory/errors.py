@@ -22,6 +22,8 @@ class RoughPath(LinkwrightError):
 class TimingFailed(LinkwrightError):
     """No time law was found for what was asked."""
 
+    exit_status = 1
+
     def __init__(self, law: str, asked: Mapping[str, object], found: str) -> None:
         self.law, self.asked, self.found = law, dict(asked), found
         what = ", ".join(f"{name} {value}" for name, value in self.asked.items())
@@ -30,6 +32,8 @@ class TimingFailed(LinkwrightError):
 
 class LimitsExceeded(LinkwrightError):
     """A motion breaks a limit by more than may be repaired."""
+
+    exit_status = 1
 
     def __init__(self, failures: Mapping[str, float], bound: float) -> None:
         self.failures, self.bound = dict(failures), bound

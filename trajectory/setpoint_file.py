@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import json
 import math
-import os
-import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -18,6 +16,7 @@ import numpy as np
 
 from kinematics import InvalidValue
 from trajectory.errors import SetpointFileError
+from trajectory.files import write_files
 from trajectory.path import POSE_NAMES, Array
 from trajectory.setpoints import Setpoints
 
@@ -31,7 +30,18 @@ def write_setpoints(file: FilePath | str, setpoints: Setpoints) -> None:
     Raises:
         InvalidValue: a set-point is not finite.
         ValueError: the header holds a number that is not finite.
-        OSError: the folder cannot be written to.
+        CannotWrite: the folder cannot be written to.
+    """
+    file = FilePath(file)
+    write_files(file.parent, {file.name: setpoints_text(setpoints)})
+
+
+def setpoints_text(setpoints: Setpoints) -> str:
+    """The CSV file's content.
+
+    Raises:
+        InvalidValue: a set-point is not finite.
+        ValueError: the header holds a number that is not finite.
     """
     table = setpoints.table()
     if not np.isfinite(table).all():
@@ -41,22 +51,7 @@ def write_setpoints(file: FilePath | str, setpoints: Setpoints) -> None:
     lines = [f"# {FORMAT}", *(f"# {name}: {json.dumps(value, allow_nan=False)}" for name, value in header.items())]
     lines.append(",".join(setpoints.columns))
     lines.extend(",".join(map(repr, row)) for row in table.tolist())
-    write_atomically(FilePath(file), lines)
-
-
-def write_atomically(file: FilePath, lines: Iterable[str]) -> None:
-    """Write lines of text to a temporary file in the same folder, then move it into place."""
-    handle, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as stream:
-            stream.writelines(f"{line}\n" for line in lines)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, file)
-    except BaseException:
-        FilePath(temporary).unlink(missing_ok=True)
-        raise
+    return "\n".join(lines) + "\n"
 
 
 def read_setpoints(file: FilePath | str) -> Setpoints:

@@ -1,0 +1,182 @@
+"""Regions of the pose space, all coordinates continuous.
+
+A region is a map from the unit cube: one parametrisation serves grids, random samples and local searches, and its
+faces are the region's boundary.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from itertools import product
+
+import numpy as np
+
+from design.errors import InvalidRegion
+
+Array = np.ndarray
+Interval = float | tuple[float, float]
+_ROUNDING = 1e-12  # m or rad
+
+
+class Region(ABC):
+    """A bounded set of poses."""
+
+    @property
+    @abstractmethod
+    def intervals(self) -> dict[str, tuple[float, float]]:
+        """Bounds of each coordinate by its name; equal bounds fix it."""
+
+    @abstractmethod
+    def from_unit(self, unit: Array, names: Sequence[str]) -> Array:
+        """(..., k) in [0, 1] -> (..., n) poses in the order of `names`."""
+
+    @property
+    @abstractmethod
+    def dimension(self) -> int:
+        """k, how many coordinates are free."""
+
+    @abstractmethod
+    def contains(self, poses: Array, names: Sequence[str]) -> Array:
+        """(..., n) -> (...,) whether each pose is inside, the boundary included up to rounding."""
+
+    @abstractmethod
+    def outline(self) -> list[Array]:
+        """Edges of the region's x, y, z part as polylines (k, 3), for drawing."""
+
+    def check(self, names: Sequence[str]) -> None:
+        """Check that the region speaks of exactly these coordinates.
+
+        Raises:
+            InvalidRegion: one is missing or unknown.
+        """
+        for name in names:
+            if name not in self.intervals:
+                raise InvalidRegion(name, "nothing", f"bounds for each of {', '.join(names)}")
+        for name in self.intervals:
+            if name not in names:
+                raise InvalidRegion(name, "a coordinate", f"one of {', '.join(names)}")
+
+    def grid(self, names: Sequence[str], counts: Sequence[int]) -> Array:
+        """(prod counts, n) poses on a regular grid of the unit cube, its faces included."""
+        axes = [np.linspace(0.0, 1.0, c) if c > 1 else np.array([0.5]) for c in counts]
+        unit = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, self.dimension)
+        return self.from_unit(unit, names)
+
+    def corners(self, names: Sequence[str]) -> Array:
+        """(2^k, n) images of the unit cube's corners."""
+        return self.from_unit(np.array(list(product((0.0, 1.0), repeat=self.dimension))), names)
+
+    def random(self, names: Sequence[str], count: int, rng: np.random.Generator) -> Array:
+        """(count, n) poses, uniform over the region's volume."""
+        return self.from_unit(rng.random((count, self.dimension)), names)
+
+
+class Box(Region):
+    """An axis-aligned box: `Box(x=0.0, y=(-0.25, 0.25), ...)`; a number fixes a coordinate.
+
+    Raises:
+        InvalidRegion: bounds that are not finite or not in rising order.
+    """
+
+    def __init__(self, **coordinates: Interval) -> None:
+        self._intervals = {name: _interval(name, value) for name, value in coordinates.items()}
+
+    def __repr__(self) -> str:
+        return f"Box({', '.join(f'{k}={v}' for k, v in self._intervals.items())})"
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float]]:
+        """Bounds by name."""
+        return dict(self._intervals)
+
+    @property
+    def dimension(self) -> int:
+        """Coordinates that are not fixed."""
+        return sum(low < high for low, high in self._intervals.values())
+
+    def from_unit(self, unit: Array, names: Sequence[str]) -> Array:
+        """Affine, in the order of `names`; fixed coordinates take no column of `unit`."""
+        pose = np.empty((*unit.shape[:-1], len(names)))
+        column = 0
+        for i, name in enumerate(names):
+            low, high = self._intervals[name]
+            if low < high:
+                pose[..., i] = low + (high - low) * unit[..., column]
+                column += 1
+            else:
+                pose[..., i] = low
+        return pose
+
+    def contains(self, poses: Array, names: Sequence[str]) -> Array:
+        """Each coordinate between its bounds."""
+        low, high = np.array([self._intervals[name] for name in names]).T
+        return ((poses >= low - _ROUNDING) & (poses <= high + _ROUNDING)).all(axis=-1)
+
+    def outline(self) -> list[Array]:
+        """The box's edges."""
+        sides = [self._intervals.get(name, (0.0, 0.0)) for name in ("x", "y", "z")]
+        vertices = np.array(list(product(*sides)))
+        return [vertices[[i, j]] for i in range(8) for j in range(i + 1, 8) if (i ^ j) in (1, 2, 4)]
+
+
+class Cylinder(Region):
+    """x and y inside a circle about the z axis, the other coordinates in intervals.
+
+    Raises:
+        InvalidRegion: a radius that is not positive, or bounds not in rising order.
+    """
+
+    def __init__(self, radius: float, **coordinates: Interval) -> None:
+        if not (math.isfinite(radius) and radius > 0.0):
+            raise InvalidRegion("radius", radius, "a finite length > 0 m")
+        for name in ("x", "y"):
+            if name in coordinates:
+                raise InvalidRegion(name, coordinates[name], "only the radius for x and y")
+        self.radius = float(radius)
+        self._rest = Box(**coordinates)
+
+    def __repr__(self) -> str:
+        return f"Cylinder(radius={self.radius}, {repr(self._rest)[4:]}"
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float]]:
+        """Bounds by name; x and y those of the circle's square."""
+        side = (-self.radius, self.radius)
+        return {"x": side, "y": side} | self._rest.intervals
+
+    @property
+    def dimension(self) -> int:
+        """The disc's two, and the rest."""
+        return 2 + self._rest.dimension
+
+    def from_unit(self, unit: Array, names: Sequence[str]) -> Array:
+        """Area-true polar coordinates in the first two columns, affine in the rest."""
+        radius, azimuth = self.radius * np.sqrt(unit[..., 0]), 2.0 * math.pi * unit[..., 1]
+        others = [name for name in names if name not in ("x", "y")]
+        pose = np.empty((*unit.shape[:-1], len(names)))
+        pose[..., names.index("x")] = radius * np.cos(azimuth)
+        pose[..., names.index("y")] = radius * np.sin(azimuth)
+        pose[..., [names.index(name) for name in others]] = self._rest.from_unit(unit[..., 2:], others)
+        return pose
+
+    def contains(self, poses: Array, names: Sequence[str]) -> Array:
+        """Inside the circle, and the other coordinates between their bounds."""
+        x, y = poses[..., names.index("x")], poses[..., names.index("y")]
+        others = [name for name in names if name not in ("x", "y")]
+        rest = self._rest.contains(poses[..., [names.index(name) for name in others]], others)
+        return rest & (np.hypot(x, y) <= self.radius + _ROUNDING)
+
+    def outline(self) -> list[Array]:
+        """The circles at both ends."""
+        turn = np.linspace(0.0, 2.0 * math.pi, 97)
+        ring = self.radius * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+        return [np.column_stack([ring, np.full(97, z)]) for z in self._rest.intervals.get("z", (0.0,))]
+
+
+def _interval(name: str, value: Interval) -> tuple[float, float]:
+    low, high = (value, value) if isinstance(value, int | float) else value
+    if not (math.isfinite(low) and math.isfinite(high) and low <= high):
+        raise InvalidRegion(name, value, "two finite numbers, the lower first")
+    return float(low), float(high)
