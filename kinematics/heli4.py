@@ -240,11 +240,11 @@ class Heli4(RodLevel):
         """s_i (3, 4) = B_i - A_i with both plates at the origin; (18) with h_i minus the actuator's own height."""
         return Heli4.platform_points(ca.SX(4, 1), g) - Heli4.arm_points(joints, g)
 
-    def _roots(self, joints: Array) -> Array:
+    def _roots(self, joints: Array, most: int | None = None) -> Array:
         def build(model: Model) -> Build:
             return [model.joints], [quartic(self._spheres(model.joints, model.g), model.g.rod_length)]
 
-        return real_roots(evaluate(self.program("quartic", build), joints)[0])
+        return real_roots(evaluate(self.program("quartic", build), joints)[0], most)
 
     def _poses_of(self, joints: Array, roots: Array) -> Array:
         """(..., 4) joints and (...,) roots -> (..., 4) poses."""
@@ -259,7 +259,7 @@ class Heli4(RodLevel):
     def forward(self, joints: Array) -> Array:
         """(..., 4) -> (..., 4): both pairs of limbs on the lower sheet, the quartic's smallest real root."""
         joints = self._joints(joints)
-        return self._poses_of(joints, self._roots(joints)[..., 0])
+        return self._poses_of(joints, self._roots(joints, most=1)[..., 0])
 
     def assembly_modes(self, joints: Array) -> Array:
         """(4,) -> (k, 4), every real pose with these joints, at most four; the working one first."""

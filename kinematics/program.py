@@ -73,7 +73,7 @@ class Program:
     """Instructions in order: work[target] = op(work[left], work[right]).
 
     INPUT reads column `left` of the inputs laid side by side; OUTPUT writes column `target` of the outputs laid side
-    by side (dense, column by column); CONST loads `constant`.
+    by side (dense, row by row); CONST loads `constant`.
     """
 
     op: np.ndarray  # (k,) int64
