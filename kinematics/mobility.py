@@ -45,7 +45,7 @@ class Mobility(NamedTuple):
     largest_dropped: float
 
     @property
-    def index(self) -> int:
+    def mobility(self) -> int:
         """m = m_K - m_S, the same at every pose."""
         return self.kinematic - self.constraint
 
