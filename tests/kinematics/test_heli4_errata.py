@@ -23,10 +23,10 @@ def joints_at(geometry, pose=POSE):
 def test_table_1_pitch_is_per_turn_and_6_wants_it_per_radian():
     """One turn of the tool moves the upper plate by 50 mm: limbs 3 and 4 stand as at a tool 50 mm higher."""
     robot = Heli4()
-    turned, raised, unturned = robot.inverse([POSE + [0, 0, 0, 2 * np.pi], POSE + [0, 0, 0.050, 0], POSE])
+    turned, raised, unturned = robot.inverse([np.add(POSE, [0, 0, 0, 2 * np.pi]), np.add(POSE, [0, 0, 0.050, 0]), POSE])
     assert np.abs(turned - raised)[2:].max() < 1e-14
     assert np.array_equal(turned[:2], unturned[:2])
-    assert np.isnan(robot.inverse(POSE + [0, 0, 0.050 * 2 * np.pi * 2, 0])).any()  # what (6) makes of two turns
+    assert np.isnan(robot.inverse(np.add(POSE, [0, 0, 0.050 * 2 * np.pi * 2, 0]))).any()  # what (6) makes of two turns
 
 
 def test_the_workspace_is_one_metre_in_diameter_not_in_radius():
@@ -64,7 +64,8 @@ def test_14_jumps_by_a_turn_where_an_arm_passes_pi():
     jumped = joints > np.pi
     assert np.abs(printed - joints)[~jumped].max() < 1e-12
     assert np.abs(printed + 2 * np.pi - joints)[jumped].max() < 1e-12
-    assert 0.04 < jumped.any(axis=-1).mean() < 0.06
+    assert np.abs(jumped.mean(axis=0) - 0.05).max() < 0.01  # of the workspace, for each limb
+    assert np.abs(jumped.any(axis=-1).mean() - 0.20) < 0.02  # for one limb or another
 
 
 def sphere_values(geometry, printed):
@@ -160,11 +161,11 @@ def test_35_wants_the_upper_pair(geometry):
 
 
 def test_four_roots_are_real_and_the_largest_is_almost_never_the_working_one():
-    wrong, poses = 0, cylinder(300, seed=3)
-    for pose, joints in zip(poses, Heli4().inverse(poses), strict=True):
+    robot, wrong, poses = Heli4(), 0, cylinder(300, seed=3)
+    for pose, joints in zip(poses, robot.inverse(poses), strict=True):
         coefficients, _ = eliminated(*conics(ByHand(TABLE_1), joints))
         roots = np.roots(coefficients)
-        assert len(Heli4().assembly_modes(joints)) == 4
+        assert len(robot.assembly_modes(joints)) == 4
         assert np.abs(roots.imag).max() < 1e-3
         largest = roots.real[np.abs(roots.real).argmax()]
         wrong += abs(largest - pose[1]) > 1e-4
