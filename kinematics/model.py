@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
 import casadi as ca
@@ -36,17 +36,17 @@ class Model:
         self.j_q = ca.diag(j_q)
         self.j_x = -ca.jacobian(self.closure, self.pose) @ mechanism.pose_rate_map(self.pose)
 
-    @property
+    @cached_property
     def j_q_at_pose(self) -> ca.SX:
         """(m,) the diagonal of J_q in the working mode."""
         return self.at_pose(self.j_q)
 
-    @property
+    @cached_property
     def j_x_at_pose(self) -> ca.SX:
         """(m, n) J_x in the working mode."""
         return self.at_pose(self.j_x)
 
-    @property
+    @cached_property
     def inverse_jacobian(self) -> ca.SX:
         """(m, n) J_m = J_q^-1 J_x in the working mode."""
         return ca.diag(1 / self.j_q_at_pose) @ self.j_x_at_pose

@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.interpreter import evaluate
-from kinematics.mechanism import Array, Build, Mechanism
+from kinematics.mechanism import Array, Build, Mechanism, checked
 from kinematics.model import Model
 
 
@@ -35,8 +35,13 @@ def joint_motion(robot: Mechanism, pose: Array, first: Array, second: Array, thi
         rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("first", "second", "third")]
         return [model.pose, *rates], derivatives_along(model.inverse, model.pose, rates)
 
-    given = [np.asarray(v, dtype=float) for v in (pose, first, second, third)]
-    return JointMotion(*evaluate(robot.program("joint_motion", build), *np.broadcast_arrays(*given)))
+    named = {"pose": pose, "first derivative": first, "second derivative": second, "third derivative": third}
+    given = [checked(v, name, robot.pose_names) for name, v in named.items()]
+    motion = JointMotion(*evaluate(robot.program("joint_motion", build), *np.broadcast_arrays(*given)))
+    unreachable = np.isnan(motion.position).any(axis=-1)
+    for part in motion:
+        part[unreachable] = np.nan
+    return motion
 
 
 def derivatives_along(expression: ca.SX, variable: ca.SX, rates: list[ca.SX]) -> list[ca.SX]:
