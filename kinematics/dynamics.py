@@ -13,7 +13,7 @@ import numpy as np
 from kinematics.bodies import BodySet
 from kinematics.interpreter import evaluate
 from kinematics.linear import adjugate
-from kinematics.mechanism import Array, Build, Mechanism
+from kinematics.mechanism import Array, Build, Mechanism, checked
 from kinematics.model import Model
 from kinematics.motion import derivatives_along
 
@@ -36,7 +36,8 @@ def inverse_dynamics(robot: Mechanism, payload: float, pose: Array, velocity: Ar
         rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration")]
         return [model.pose, *rates], [_at_actuators(model, _torques(robot, model, payload, rates))]
 
-    given = [np.asarray(v, dtype=float) for v in (pose, velocity, acceleration)]
+    named = {"pose": pose, "velocity": velocity, "acceleration": acceleration}
+    given = [checked(v, name, robot.pose_names) for name, v in named.items()]
     program = robot.program(("inverse_dynamics", payload, robot.inertia), build)
     return evaluate(program, *np.broadcast_arrays(*given))[0]
 

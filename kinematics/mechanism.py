@@ -103,6 +103,11 @@ class Mechanism(ABC):
         return self.joint_names
 
     @property
+    def actuator_units(self) -> tuple[str, ...]:
+        """Rad or m."""
+        return self.joint_units
+
+    @property
     @abstractmethod
     def characteristic_length(self) -> float:
         """What makes a rotation a length [m]."""
@@ -157,10 +162,12 @@ class Mechanism(ABC):
     def isotropic(self, pose: Array, characteristic_length: float | None = None) -> tuple[Array, Array]:
         """v_w (...,) and f_w (...,): worst speed and force for unit actuator speed and effort; Shayya et al. (40)."""
         length = self._length(characteristic_length)
-        speeds, forces = self._evaluate(
-            ("isotropic", length), lambda model: isotropic_components(self._homogeneous(model, length)), pose
-        )
-        return speeds.min(axis=-1), forces.min(axis=-1)
+
+        def smallest(model: Model) -> list[ca.SX]:
+            return [_smallest(v) for v in isotropic_components(self._homogeneous(model, length))]
+
+        speed, force = self._evaluate(("isotropic", length), smallest, pose)
+        return speed[..., 0], force[..., 0]
 
     def fvi(self, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None) -> Array:
         """(...,) min(v_w / v_wl, f_w / f_wl); Shayya et al. (39). NaN where the pose is out of reach."""
@@ -171,7 +178,7 @@ class Mechanism(ABC):
         length = self._length(characteristic_length)
         (j_mw,) = self._evaluate(("homogeneous", length), lambda model: [self._homogeneous(model, length)], pose)
         good = np.isfinite(j_mw).all(axis=(-2, -1))
-        result = np.full(good.shape, np.nan)
+        result = np.where(np.isnan(j_mw).any(axis=(-2, -1)), np.nan, np.inf)
         result[good] = np.linalg.cond(j_mw[good])
         return result
 
@@ -185,10 +192,10 @@ class Mechanism(ABC):
         """
         bounds = bounds or self.fvi_bounds
         length = self._length(characteristic_length)
-        (values,) = self._evaluate(
-            (name, bounds, length), lambda _: [self.margin_components(name, bounds, length)], pose
+        (value,) = self._evaluate(
+            (name, bounds, length), lambda _: [_smallest(self.margin_components(name, bounds, length))], pose
         )
-        return values.min(axis=-1)
+        return value[..., 0]
 
     def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
         """A margin's components in the model's symbols `pose` and `geometry`, each to be at least the bound.
@@ -276,11 +283,19 @@ class Mechanism(ABC):
         )
 
 
+def _smallest(components: ca.SX) -> ca.SX:
+    """Their minimum; the interpreter's FMIN passes NaN on."""
+    result = components[0]
+    for i in range(1, components.numel()):
+        result = ca.fmin(result, components[i])
+    return result
+
+
 def checked(values: Array, what: str, names: tuple[str, ...]) -> Array:
-    """The values as floats, once their last axis has one item a name.
+    """The values as an array (..., len(names)).
 
     Raises:
-        InvalidShape: it has not.
+        InvalidShape: the last axis does not match.
     """
     array = np.asarray(values, dtype=float)
     if array.ndim == 0 or array.shape[-1] != len(names):

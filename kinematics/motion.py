@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.interpreter import evaluate
-from kinematics.mechanism import Array, Build, Mechanism
+from kinematics.mechanism import Array, Build, Mechanism, checked
 from kinematics.model import Model
 
 
@@ -46,8 +46,13 @@ def _motion(
         rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("first", "second", "third")]
         return [model.pose, *rates], derivatives_along(expression(model), model.pose, rates)
 
-    given = [np.asarray(v, dtype=float) for v in motion]
-    return JointMotion(*evaluate(robot.program(key, build), *np.broadcast_arrays(*given)))
+    named = zip(("pose", "first derivative", "second derivative", "third derivative"), motion, strict=True)
+    given = [checked(v, name, robot.pose_names) for name, v in named]
+    found = JointMotion(*evaluate(robot.program(key, build), *np.broadcast_arrays(*given)))
+    unreachable = np.isnan(found.position).any(axis=-1)
+    for part in found:
+        part[unreachable] = np.nan
+    return found
 
 
 def derivatives_along(expression: ca.SX, variable: ca.SX, rates: list[ca.SX]) -> list[ca.SX]:

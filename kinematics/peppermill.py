@@ -93,6 +93,7 @@ class Peppermill(Mechanism):
     inertia: PeppermillInertia
     pose_names = ("x", "y", "z", "theta")
     joint_names = ("d1", "d2", "theta1", "theta2")
+    joint_units = ("m", "m", "rad", "rad")
     rotations = (3,)
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.0, 0.0)
     # 750 W servos at 3000 rpm and three times their rated torque, asked for 2.5 m/s and 50 N: our assumption.
@@ -150,6 +151,11 @@ class Peppermill(Mechanism):
     def actuator_names(self) -> tuple[str, ...]:
         """The motors: limb, then the hand of the screw."""
         return ("1L", "1R", "2L", "2R")
+
+    @property
+    def actuator_units(self) -> tuple[str, ...]:
+        """All motors turn."""
+        return ("rad",) * 4
 
     def motors(self, joints: Array) -> Array:
         """(..., 4) joints [m, m, rad, rad] -> (..., 4) motor angles [rad]; (A.1)-(A.4)."""

@@ -67,8 +67,8 @@ class Limits:
         return np.broadcast_to(np.asarray(value, dtype=float), (count,)).copy()
 
     def as_dict(self) -> dict[str, object]:
-        """The limits that are set."""
-        return {name: value for name, value in asdict(self).items() if value is not None}
+        """The limits that are set; a list for one a joint."""
+        return {k: list(v) if isinstance(v, tuple) else v for k, v in asdict(self).items() if v is not None}
 
 
 def _numbers(value: object) -> tuple[float, ...] | None:

@@ -133,7 +133,7 @@ def _sampled(cycle: Cycle, piece: Piece, count: int, last: bool) -> Motion:
 
 
 def _header(before: Cycle, after: Cycle, period: float, counts: Sequence[int]) -> dict[str, Any]:
-    """Plain data; lists, not tuples, so that it reads back equal."""
+    """Plain data, with lists and no tuples, so that it reads back equal."""
     robot = before.robot
     header: dict[str, Any] = {
         "units of this header": "SI and radians unless a name says so",
@@ -141,21 +141,17 @@ def _header(before: Cycle, after: Cycle, period: float, counts: Sequence[int]) -
         "geometry hash": robot.geometry.digest,
         "inertia": str(robot.inertia),
         "laws": [piece.timed.law.name for piece in before.pieces],
-        "period [s]": period,
+        "period [s]": float(period),
         "periods": list(counts),
         "cycle time before stretching [s]": before.duration,
         "cycle time after stretching [s]": after.duration,
-        "payloads [kg]": [piece.payload for piece in before.pieces],
+        "payloads [kg]": [float(piece.payload) for piece in before.pieces],
     }
-    header |= {f"limit {name}": _plain(value) for name, value in before.limits.as_dict().items()}
-    header |= {f"path {name}": _plain(value) for name, value in before.pieces[0].path.as_dict().items()}
+    header |= {f"limit {name}": value for name, value in before.limits.as_dict().items()}
+    header |= {f"path {name}": value for name, value in before.pieces[0].path.as_dict().items()}
     for k, piece in enumerate(after.pieces):
         found = piece.timed.verification
         header[f"peak over limit, piece {k + 1}"] = dict(found.peak_over_limit)
         header[f"rms torque, piece {k + 1}"] = found.rms_torque.tolist()
     header["assumptions"] = list(ASSUMPTIONS)
     return header
-
-
-def _plain(value: object) -> object:
-    return list(value) if isinstance(value, tuple) else value

@@ -104,7 +104,7 @@ def _tool_rows(first: Array, second: Array, cap: float) -> Coefficients:
     length = np.linalg.norm(first, axis=-1, keepdims=True)
     along = (second * first).sum(axis=-1, keepdims=True) / length
     normal = np.linalg.norm(second - along * first / length, axis=-1, keepdims=True)
-    angles = np.linspace(0.0, math.pi, _FACETS, endpoint=False)
+    angles = (np.arange(_FACETS) + 0.5) * math.pi / _FACETS  # a vertex on the tangent: straight ahead all is used
     inside = cap * math.cos(math.pi / (2 * _FACETS))
     a = length * np.cos(angles) / inside
     b = (along * np.cos(angles) + normal * np.sin(angles)) / inside

@@ -1,4 +1,4 @@
-"""Run the benchmarks and the Heli4 study, and write their figures and the picture into the README, between its markers."""
+"""Run the benchmarks and the Heli4 study; write their figures and the picture into the README, between its markers."""
 
 from __future__ import annotations
 
@@ -93,8 +93,8 @@ def _run_table(run: dict[str, Any]) -> str:
     peaks = ", ".join(f"{name} {value:.4f}" for name, value in cycle["peak_over_limit"].items())
     lines += ["", f"Held back by: {'; '.join(run['active'])}.", ""]
     lines.append(
-        f"Half of the Adept cycle (25 / 305 / 25 mm, half turn, 1 kg): {cycle['half_cycle']:.4f} s; there and back on a 1 ms "
-        f"bus {cycle['cycle_on_the_bus']:.3f} s; peak over limit, between gridpoints too: {peaks}."
+        f"Half of the Adept cycle (25 / 305 / 25 mm, half turn, 1 kg): {cycle['half_cycle']:.4f} s; there and back on "
+        f"a 1 ms bus {cycle['cycle_on_the_bus']:.3f} s; peak over limit, between gridpoints too: {peaks}."
     )
     return "\n".join(lines) + "\n"
 
