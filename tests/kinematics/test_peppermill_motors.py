@@ -23,6 +23,7 @@ def test_motors_and_joints_undo_each_other_beyond_a_turn():
     np.testing.assert_allclose(motors, joints @ ByHand(UNLIKE).drives.T, atol=1e-12)
     assert np.abs(robot.from_motors(motors) - joints).max() < 1e-13
     assert robot.actuator_names == ("1L", "1R", "2L", "2R")
+    assert (robot.actuator_units, robot.joint_units) == (("rad",) * 4, ("m", "m", "rad", "rad"))
 
 
 def test_like_motors_turn_a_limb_and_unlike_ones_slide_it():
