@@ -137,9 +137,10 @@ class Heli4(RodLevel):
 
     @staticmethod
     def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """The elbow-out root; the sum of two angles does not jump where q passes pi, as (14) does."""
+        """The elbow-out root, in (-pi/2, 3 pi/2]: the cut lies where an arm points inward, not inside the workspace as
+        with (14), which jumps where q passes pi."""
         m, n, right, root = Heli4._inverse_terms(pose, g)
-        return ca.atan2(n, m) + ca.atan2(root, right)
+        return ca.pi / 2 + ca.atan2(n * root - m * right, n * right + m * root)
 
     @staticmethod
     def joint_cosines_and_sines(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
