@@ -68,3 +68,11 @@ def fvi_components(j_mw: ca.SX, bounds: FviBounds) -> ca.SX:
     """(2 m,) speeds over v_wl, then forces over f_wl; the FVI (39) is the smallest of them."""
     speeds, forces = isotropic_components(j_mw)
     return ca.vertcat(speeds * (bounds.joint_speed / bounds.speed), forces * (bounds.joint_effort / bounds.force))
+
+
+def smallest(components: ca.SX) -> ca.SX:
+    """Their minimum; the interpreter's FMIN passes NaN on."""
+    result = components[0]
+    for i in range(1, components.numel()):
+        result = ca.fmin(result, components[i])
+    return result

@@ -17,7 +17,7 @@ import numpy as np
 from kinematics.bodies import Bodies
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.geometry import GeometryRecord
-from kinematics.indices import FviBounds, fvi_components, homogeneous, isotropic_components
+from kinematics.indices import FviBounds, fvi_components, homogeneous, isotropic_components, smallest
 from kinematics.interpreter import bulk, evaluate
 from kinematics.linear import determinant
 from kinematics.model import Model, model_of
@@ -163,10 +163,10 @@ class Mechanism(ABC):
         """v_w (...,) and f_w (...,): worst speed and force for unit actuator speed and effort; Shayya et al. (40)."""
         length = self._length(characteristic_length)
 
-        def smallest(model: Model) -> list[ca.SX]:
-            return [_smallest(v) for v in isotropic_components(self._homogeneous(model, length))]
+        def worst(model: Model) -> list[ca.SX]:
+            return [smallest(v) for v in isotropic_components(self._homogeneous(model, length))]
 
-        speed, force = self._evaluate(("isotropic", length), smallest, pose)
+        speed, force = self._evaluate(("isotropic", length), worst, pose)
         return speed[..., 0], force[..., 0]
 
     def fvi(self, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None) -> Array:
@@ -193,7 +193,7 @@ class Mechanism(ABC):
         bounds = bounds or self.fvi_bounds
         length = self._length(characteristic_length)
         (value,) = self._evaluate(
-            (name, bounds, length), lambda _: [_smallest(self.margin_components(name, bounds, length))], pose
+            (name, bounds, length), lambda _: [smallest(self.margin_components(name, bounds, length))], pose
         )
         return value[..., 0]
 
@@ -281,14 +281,6 @@ class Mechanism(ABC):
             np.broadcast_to(first, (*lead, first.shape[-1])),
             np.broadcast_to(second, (*lead, second.shape[-1])),
         )
-
-
-def _smallest(components: ca.SX) -> ca.SX:
-    """Their minimum; the interpreter's FMIN passes NaN on."""
-    result = components[0]
-    for i in range(1, components.numel()):
-        result = ca.fmin(result, components[i])
-    return result
 
 
 def checked(values: Array, what: str, names: tuple[str, ...]) -> Array:

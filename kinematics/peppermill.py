@@ -80,7 +80,7 @@ class PeppermillInertia:
 
 
 class Peppermill(Mechanism):
-    """The CRRHHRRC generator of Schoenflies motions with its differential drives.
+    """Pose [x, y, z, theta], joints d1, d2 and theta1, theta2, moved by the motors 1L, 1R, 2L, 2R.
 
     `inverse_jacobian` and `jacobians` speak of the joints d1, d2 [m], theta1, theta2 [rad]; indices, torques and
     `actuator_jacobian` of the four identical motors [rad]. J_x is A of (47); J_q is B with r_i folded in, since the
@@ -189,7 +189,10 @@ class Peppermill(Mechanism):
         return pose
 
     def forward(self, joints: Array) -> Array:
-        """(..., 4) -> (..., 4): limb 1 reaches up to the platform, limb 2 down; a NaN row where there is no pose."""
+        """(..., 4) -> (..., 4): limb 1 reaches up to the platform, limb 2 down; a NaN row where there is no pose.
+
+        It undoes `inverse` wherever the distal links do so: up to the singularities of the second kind.
+        """
         program = self.program("forward", lambda m: ([m.joints], [limbs.pose_of_joints(m.joints, limbs.SIDES[0], m.g)]))
         pose = evaluate(program, self._joints(joints))[0]
         pose[np.isnan(pose).any(axis=-1)] = np.nan
