@@ -83,18 +83,18 @@ def _roots_between(c, curvature, size, most, edges, values, found):  # type: ign
             start = _start(curvature, low, high, f_low, f_high, i == 0, i + 1 == last)
             found[count] = _bracketed(c, start, low, high, f_low)
             count += 1
-        elif i + 1 < last and f_low != 0.0 and _touches(c, high, f_high, f_low, values[i + 2]):
+        elif i + 1 < last and f_low != 0.0 and _touches(c, high, f_high, values[i + 2]):
             found[count] = high
             count += 1
     return count
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _touches(c, x, value, before, after):  # type: ignore[no-untyped-def]
-    """Whether the stationary point x is a double root: zero, or never across zero but within rounding of it."""
+def _touches(c, x, value, after):  # type: ignore[no-untyped-def]
+    """Whether the stationary point x, with no change of sign before it, is a double root: zero but for rounding."""
     if value == 0.0:
         return True
-    if value * before < 0.0 or value * after < 0.0:
+    if value * after < 0.0:
         return False
     size = 0.0
     for i in range(c.shape[0]):
