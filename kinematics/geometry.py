@@ -44,11 +44,8 @@ class GeometryRecord:
     def __post_init__(self) -> None:
         for f in fields(self):
             given, wanted = getattr(self, f.name), _shape(f)
-            try:
-                array = np.asarray(given, dtype=float)
-            except (TypeError, ValueError):
-                raise self._invalid(f.name, given, "a number" if wanted == () else f"{wanted[0]} numbers") from None
-            if array.shape != wanted:
+            array = _numbers(given)
+            if array is None or array.shape != wanted:
                 raise self._invalid(f.name, given, "a number" if wanted == () else f"{wanted[0]} numbers")
             if not np.all(np.isfinite(array)):
                 raise self._invalid(f.name, given, "finite values")
@@ -61,7 +58,7 @@ class GeometryRecord:
 
     @classmethod
     def _invalid(cls, name: str, found: object, expected: str) -> InvalidGeometry:
-        return InvalidGeometry(cls.__qualname__.split(".")[0], name, found, expected)
+        return InvalidGeometry(cls.__qualname__.split(".")[0].removesuffix("Geometry"), name, found, expected)
 
     @classmethod
     def sizes(cls) -> dict[str, int]:
@@ -111,3 +108,12 @@ class GeometryRecord:
 
 def _shape(f: Field[Any]) -> tuple[int, ...]:
     return (len(f.default),) if isinstance(f.default, tuple) else ()
+
+
+def _numbers(given: object) -> Vector | None:
+    """As an array of floats; None where any of it is not a number, such as text that only looks like one."""
+    try:
+        array = np.asarray(given)
+    except ValueError:  # ragged
+        return None
+    return array.astype(float) if array.dtype.kind in "iuf" else None

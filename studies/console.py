@@ -10,8 +10,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from rich.console import Console
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 from studies.check import Row
@@ -36,15 +37,19 @@ def progress() -> Iterator[Callable[[str], None]]:
 
 def print_json(data: dict[str, Any]) -> None:
     """One object on standard output; a number that is not finite becomes null, as JSON has none."""
-    json.dump(_plain(data), sys.stdout, indent=2)
-    sys.stdout.write("\n")
+    sys.stdout.write(json.dumps(_plain(data), indent=2) + "\n")
 
 
 def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
     """A table on standard output, never narrower than its contents in a pipe."""
     console = Console()
     table = Table(
-        *(Text(c) for c in columns), title=Text(title), title_justify="left", box=None, pad_edge=False, highlight=False
+        *(Column(Text(c)) for c in columns),
+        title=Text(title),
+        title_justify="left",
+        box=None,
+        pad_edge=False,
+        highlight=False,
     )
     for row in rows:
         table.add_row(*(Text(str(cell)) for cell in row))
@@ -144,10 +149,12 @@ def _print_files(files: list[Path]) -> None:
 
 
 def _pose(pose: Iterable[float]) -> str:
-    return f"({', '.join(f'{v:.4g}' for v in pose)})"
+    return f"({', '.join(f'{round(v, 6) + 0.0:.4g}' for v in pose)})"
 
 
 def _plain(value: Any) -> Any:
+    if isinstance(value, np.generic):
+        value = value.item()
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, dict):

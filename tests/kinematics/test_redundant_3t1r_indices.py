@@ -127,6 +127,12 @@ def test_true_force_capability_is_never_below_the_minimum_norm_one():
             assert (other.force_capability(poses) >= other.isotropic(poses)[1] * (1 - 1e-12)).all()
 
 
+def test_force_capability_is_nan_out_of_reach_and_zero_on_a_singularity():
+    assert np.isnan(ROBOT.force_capability(np.array([0.0, 0, 3, 0])))
+    flat = Redundant3T1R(Redundant3T1R.Geometry(outer_rail_z=0.1 + 1e-13))
+    assert flat.force_capability(np.array([0.0, 0.05, 0, 0.4])) < 1e-10
+
+
 def test_without_redundancy_the_force_capability_is_f_w():
     heli = Heli4()
     poses = np.random.default_rng(8).uniform([-0.3, -0.3, -0.8, -3], [0.3, 0.3, -0.6, 3], (2_000, 4))
