@@ -142,22 +142,28 @@ def _newton(model: Model) -> Build:
     return [model.pose, measured, weight, damping], [cost, -(cofactors @ gradient) / det, ca.vertcat(*minors)]
 
 
-def check_encoders(robot: Mechanism, joints: Array, fit: BestFit, accuracy: float) -> EncoderCheck:
+def check_encoders(robot: Mechanism, joints: Array, fit: BestFit, starts: Array, accuracy: float) -> EncoderCheck:
     """Which encoders may be faulty: those without which the others agree.
 
     Args:
         joints: (..., m) measured.
         fit: the best fit to all of them.
+        starts: (..., s, n) further poses to look from, for a fault so large that the fit to all is far off.
         accuracy: the largest residual that sound encoders leave [m or rad].
     """
     if not accuracy > 0.0:
         raise InvalidValue("accuracy", accuracy, "a value > 0")
     m = joints.shape[-1]
     consistent = _worst(fit.residuals) <= accuracy
-    alone = least_squares(robot, joints[..., None, :], fit.pose[..., None, :], 1.0 - np.eye(m))
-    cleared = _worst(np.where(np.eye(m, dtype=bool), 0.0, alone.residuals)) > accuracy
-    suspects = ~cleared & ~consistent[..., None]
-    best = least_squares(robot, joints, fit.pose, 1.0 - suspects).pose
+    looks = np.concatenate([fit.pose[..., None, :], starts], axis=-2)[..., None, :]  # (..., 1 + s, 1, n)
+    alone = least_squares(robot, joints[..., None, None, :], looks, 1.0 - np.eye(m))
+    worst = _worst(np.where(np.eye(m, dtype=bool), 0.0, alone.residuals))  # (..., 1 + s, m)
+    worst = np.where(np.isnan(alone.residuals).any(axis=-1), np.inf, worst)
+    suspects = ((worst <= accuracy).any(axis=-2) | np.isinf(worst).all(axis=-2)) & ~consistent[..., None]
+    flat = worst.reshape(*worst.shape[:-2], -1).argmin(axis=-1)[..., None, None]
+    near = np.take_along_axis(alone.pose.reshape(*worst.shape[:-2], -1, len(robot.pose_names)), flat, axis=-2)
+    near = np.where(np.isnan(fit.pose), near[..., 0, :], fit.pose)
+    best = least_squares(robot, joints, near, 1.0 - suspects).pose
     best[~_determined(robot.inverse_jacobian(best), 1.0 - suspects)] = np.nan
     return EncoderCheck(best, fit.residuals, consistent, suspects)
 

@@ -265,16 +265,21 @@ class Redundant3T1R(RodLevel):
 
         Args:
             joints: (..., 6), consistent or not.
-            start: (..., 4) a pose nearby, such as the last one; by default the paper's model, or home at the mean x
+            start: (..., 4) a pose nearby, such as the last one; by default the paper's model, or home at the median x
                 where that finds no pose within reach.
         """
         joints = self._joints(joints)
         if start is None:
             start = self.forward(joints, tolerance=np.inf)
-            home = np.tile(self.home, (*joints.shape[:-1], 1))
-            home[..., 0] += (joints - self.inverse(np.asarray(self.home))).mean(axis=-1)
-            start = np.where(np.isnan(self.inverse(start)).any(axis=-1, keepdims=True), home, start)
+            unreached = np.isnan(self.inverse(start)).any(axis=-1, keepdims=True)
+            start = np.where(unreached, self._home_near(joints), start)
         return least_squares(self, joints, self._poses(start))
+
+    def _home_near(self, joints: Array) -> Array:
+        """Home, moved along x to where most of the joints say."""
+        home = np.tile(self.home, (*joints.shape[:-1], 1))
+        home[..., 0] += np.median(joints - self.inverse(np.asarray(self.home)), axis=-1)
+        return home
 
     def check_encoders(self, joints: Array, accuracy: float = 1e-6) -> EncoderCheck:
         """Which encoder is faulty, as far as the two redundancy equations tell; see `redundancy.check_encoders`.
@@ -287,7 +292,8 @@ class Redundant3T1R(RodLevel):
             accuracy: of a sound encoder [m].
         """
         joints = self._joints(joints)
-        return check_encoders(self, joints, self.forward_least_squares(joints), accuracy)
+        starts = self._home_near(joints)[..., None, :] + np.outer([-1.2, 0.0, 1.2], np.eye(4)[3])
+        return check_encoders(self, joints, self.forward_least_squares(joints), starts, accuracy)
 
 
 @cache
