@@ -39,6 +39,7 @@ class Mechanism(ABC):
     joint_names: ClassVar[tuple[str, ...]]
     joint_units: ClassVar[tuple[str, ...]]  # rad or m
     rotations: ClassVar[tuple[int, ...]]  # which pose coordinates are angles
+    counts_turns: ClassVar[bool] = False  # whether an angle a turn on is another pose, as on a screw
     home: ClassVar[tuple[float, ...]]  # a pose well inside the workspace
     fvi_bounds: ClassVar[FviBounds]
     margins: ClassVar[tuple[str, ...]] = ("reach", "fvi", "J_q", "det_J_q", "det_J_x")
