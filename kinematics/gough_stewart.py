@@ -23,6 +23,8 @@ from kinematics.indices import FviBounds
 from kinematics.mechanism import Array, Mechanism
 from kinematics.orientation import angles
 
+_SCREW = ("x", "y", "z", "about x", "about y", "about z")
+
 
 @dataclass(frozen=True)
 class GoughStewartInertia:
@@ -174,7 +176,7 @@ class GoughStewart(Mechanism):
 
     def leg_rates(self, pose: Array, twist: Array) -> Array:
         """(..., 6), (..., 6) -> (..., 6) leg rates [m/s] from the twist of R_E; [8.12]."""
-        return np.einsum("...ij,...j->...i", self.inverse_jacobian(pose), _six(twist, "twist"))
+        return np.einsum("...ij,...j->...i", self.inverse_jacobian(pose), _six(twist, "twist", _SCREW))
 
     def legs_wrench(self, pose: Array, forces: Array) -> Array:
         """(..., 6), (..., 6) -> (..., 6) the wrench that the legs exert on the platform; [8.26].
@@ -185,7 +187,7 @@ class GoughStewart(Mechanism):
         Returns:
             force [N] and moment about O_E [N m].
         """
-        return np.einsum("...ij,...i->...j", self.inverse_jacobian(pose), _six(forces, "leg forces"))
+        return np.einsum("...ij,...i->...j", self.inverse_jacobian(pose), _six(forces, "leg forces", self.joint_names))
 
     def leg_forces(self, pose: Array, external_wrench: Array) -> Array:
         """(..., 6), (..., 6) -> (..., 6) leg forces [N] that balance an external wrench on the platform.
@@ -194,8 +196,8 @@ class GoughStewart(Mechanism):
         singularity.
         """
         transposed = np.swapaxes(self.inverse_jacobian(pose), -1, -2)
-        wrench = np.broadcast_to(_six(external_wrench, "wrench"), transposed.shape[:-1])
-        singular = np.asarray(np.linalg.matrix_rank(np.nan_to_num(transposed)) < 6)
+        wrench = np.broadcast_to(_six(external_wrench, "wrench", _SCREW), transposed.shape[:-1])
+        singular = np.reshape(np.linalg.matrix_rank(np.nan_to_num(transposed)) < 6, transposed.shape[:-2])
         safe = np.where(singular[..., None, None], np.eye(6), transposed)
         return np.where(singular[..., None], np.nan, np.linalg.solve(safe, -wrench[..., None])[..., 0])
 
@@ -259,8 +261,8 @@ def _lengths(legs: ca.SX) -> ca.SX:
     return ca.sqrt(ca.sum1(legs * legs)).T
 
 
-def _six(values: Array, what: str) -> Array:
+def _six(values: Array, what: str, names: tuple[str, ...]) -> Array:
     array = np.asarray(values, dtype=float)
     if array.ndim == 0 or array.shape[-1] != 6:
-        raise InvalidShape(what, ("x", "y", "z", "about x", "about y", "about z"), array.shape)
+        raise InvalidShape(what, names, array.shape)
     return array
