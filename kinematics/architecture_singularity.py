@@ -121,4 +121,5 @@ def _projective(u: Array, v: Array) -> bool:
     """v x (H u) = 0 has a solution H."""
     p, zero = np.column_stack([u, np.ones(6)]), np.zeros((6, 3))
     rows = np.concatenate([np.hstack([p, zero, -v[:, :1] * p]), np.hstack([zero, p, -v[:, 1:] * p])])
-    return _dependent(rows)
+    _, values, right = np.linalg.svd(rows)
+    return bool(values[-1] <= DEPENDENT * values[0]) and not _dependent(right[-1].reshape(3, 3))

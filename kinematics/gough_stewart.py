@@ -197,7 +197,8 @@ class GoughStewart(Mechanism):
         """
         transposed = np.swapaxes(self.inverse_jacobian(pose), -1, -2)
         wrench = np.broadcast_to(_six(external_wrench, "wrench", _SCREW), transposed.shape[:-1])
-        singular = np.reshape(np.linalg.matrix_rank(np.nan_to_num(transposed)) < 6, transposed.shape[:-2])
+        rank: Array = np.asarray(np.linalg.matrix_rank(np.nan_to_num(transposed)))
+        singular = np.less(rank, 6)
         safe = np.where(singular[..., None, None], np.eye(6), transposed)
         return np.where(singular[..., None], np.nan, np.linalg.solve(safe, -wrench[..., None])[..., 0])
 

@@ -86,13 +86,17 @@ def assembly_modes(robot: GoughStewart, joints: Array) -> Array:
         robot, np.broadcast_to(joints, (len(place), 6)), np.concatenate([place, angles(turned)], axis=1), 60
     )
     poses = found.pose[found.converged]
-    apart = _apart(poses, poses, unit)
-    poses = poses[[not (apart[i, :i] < _SAME_POSE).any() for i in range(len(poses))]]
+    apart = _apart(poses, poses, unit) - _uncertainty(robot, poses, unit)[:, None]
+    poses = poses[[not (apart[i, :i] < 0.0).any() for i in range(len(poses))]]
     order = np.argsort(_apart(poses, robot.initial_pose[None], robot.characteristic_length)[:, 0], kind="stable")
     return poses[order]
 
 
-_SAME_POSE = 1e-7  # two polished poses nearer than this, in units of the platform's size, are one
+def _uncertainty(robot: GoughStewart, poses: Array, unit: float) -> Array:
+    """(k,) how far rounding may have moved a pose: on a singularity, a double pose is found as two near ones."""
+    _, jacobian = robot.lengths_and_jacobian(poses)
+    smallest = np.linalg.svd(jacobian * ([1.0] * 3 + [1.0 / unit] * 3), compute_uv=False)[:, -1]
+    return 1e-9 + 1e-13 / np.maximum(smallest, 1e-7)
 
 
 def _apart(first: Array, second: Array, unit: float) -> Array:

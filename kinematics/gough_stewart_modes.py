@@ -9,7 +9,8 @@ In Study's coordinates the closure is seven quadrics in eight homogeneous unknow
    other than zero is regular (almost every value of a smooth map is), so nothing that is real later is dropped; a
    special geometry keeps fewer, such as 16 where the platform is a triangle.
 3. For each set of leg lengths: those are followed to it. Every isolated pose is the end of some path. The ends are
-   certified: none twice, and the complex ones in conjugate pairs, else the paths are followed again with care.
+   certified: none twice, and the complex ones in conjugate pairs; else another way is taken. A way can fail, as it may
+   pass so near a platform with a pose at infinity that rounding hides the path.
 """
 
 from __future__ import annotations
@@ -21,13 +22,16 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.errors import LinkwrightError
-from kinematics.homotopy import ARRIVED, CORRECTION, refine, track
+from kinematics.homotopy import refine, track
 from kinematics.study import leg_quadrics, study_quadric
 
 Array = np.ndarray
 
 GENERIC_COUNT = 40
 _LOOPS = 60
+_ROUTES = 8  # how many ways to a target are tried
+_ROTATION = 4  # coordinates of e, the first block
+_NEAR_END = 1.0 - 1e-4  # a path that sticks before did not come to a singular end
 _SAME = 1e-6  # distance of unit points below which they are one solution
 _FINITE = 1e-7  # |K| of a unit point above which it is a displacement
 _REAL = 1e-2  # imaginary part of a unit point below which a real pose may lie near
@@ -52,8 +56,9 @@ class Platform(NamedTuple):
     squares: Array
 
     def system(self) -> Array:
-        """(7, 8, 8) the legs' quadrics and Study's."""
-        return np.concatenate([leg_quadrics(*self), study_quadric()])
+        """(7, 8, 8) differences of the legs' quadrics, which vanish with e, one leg's, and Study's."""
+        legs = leg_quadrics(*self)
+        return np.concatenate([legs[:5] - legs[5], legs[5:], study_quadric()])
 
     def path_to(self, other: Platform) -> Array:
         """(3, 7, 8, 8) the quadrics along the straight line of parameters to the other, of degree two in t."""
@@ -77,8 +82,8 @@ def generic() -> tuple[Platform, Array]:
         stations = [home, _random_platform(rng), _random_platform(rng), home]
         ends = known
         for here, there in pairwise(stations):
-            ends, status = track(here.path_to(there), ends)
-            ends = ends[status == ARRIVED]
+            ends, reached = track(here.path_to(there), ends, _ROTATION)
+            ends = ends[reached == 1.0]
         known = distinct(np.concatenate([known, _regular(home, ends)]))
         if len(known) >= GENERIC_COUNT:
             return home, known
@@ -102,8 +107,24 @@ class ModeSolver:
         rng = np.random.default_rng(40)
         self.start = Platform(base, platform, 3.0 + _complex(rng, 6))
         origin, known = generic()
-        ends, _ = track(origin.path_to(self.start), known)
-        self.solutions = distinct(_regular(self.start, ends))
+        found = [_regular(self.start, self._follow([origin, self.start], known)[0])]
+        for _ in range(_ROUTES):  # a second way around must not find more, or there is a third, and so on
+            around = [origin, _random_platform(rng), self.start]
+            found.append(distinct(np.concatenate([found[-1], _regular(self.start, self._follow(around, known)[0])])))
+            if len(found[-1]) == len(found[-2]):
+                self.solutions = found[-1]
+                return
+        raise LostPaths(self.start.squares.real)
+
+    @staticmethod
+    def _follow(stations: list[Platform], points: Array) -> tuple[Array, Array]:
+        """Ends of the paths through the stations, and the t each came to on the last leg: 0 if it stuck before."""
+        reached = np.ones(len(points))
+        for here, there in pairwise(stations):
+            before = reached
+            points, reached = track(here.path_to(there), points, _ROTATION)
+            reached = np.where(before == 1.0, reached, 0.0)
+        return points, reached
 
     @property
     def count(self) -> int:
@@ -117,14 +138,17 @@ class ModeSolver:
             LostPaths: the ends could not be certified.
         """
         target = Platform(self.start.base, self.start.platform, squares)
-        path = self.start.path_to(target)
-        for correction in (CORRECTION, 1e-2 * CORRECTION, 1e-4 * CORRECTION):
-            ends, _ = track(path, self.solutions, correction)
-            refined, last = refine(target.system(), ends)
+        rng = np.random.default_rng(6)
+        stations = [self.start, target]
+        for _ in range(_ROUTES):
+            ends, reached = self._follow(stations, self.solutions)
+            refined, last = refine(target.system(), ends, _ROTATION)
             regular = last < _REGULAR
             ends = np.where(regular[:, None], refined, ends)
-            if _certified(ends, regular):
+            if reached.min() > _NEAR_END and _certified(ends, regular):
                 return ends
+            around = self.start._replace(squares=3.0 * _complex(rng, 6))
+            stations = [self.start, around, target]
         raise LostPaths(squares)
 
     def nearly_real(self, squares: Array) -> Array:
@@ -158,7 +182,7 @@ def _distances(x: Array, y: Array) -> Array:
 
 def _regular(target: Platform, ends: Array) -> Array:
     """Those of the ends that are regular displacements (K != 0), refined."""
-    refined, last = refine(target.system(), ends)
+    refined, last = refine(target.system(), ends, _ROTATION)
     size = np.abs(np.sum(refined[:, :4] ** 2, axis=1))
     moved = np.linalg.norm(refined, axis=1)
     return refined[(last < _REGULAR) & (size > _FINITE) & np.isfinite(moved)]
