@@ -169,8 +169,8 @@ class GoughStewart(Mechanism):
 
     def _allowed(self, joints: Array) -> Array:
         low, high = self.geometry.leg_limits
-        wrong = ~((joints > 0.0) & (joints >= low) & (joints <= high)).all(axis=-1)
-        return np.where(wrong[..., None], np.nan, joints)
+        allowed = ((joints > 0.0) & (joints >= low) & (joints <= high)).all(axis=-1, keepdims=True)
+        return np.where(allowed, joints, np.nan)
 
     # Rates and forces.
 
@@ -197,8 +197,8 @@ class GoughStewart(Mechanism):
         """
         transposed = np.swapaxes(self.inverse_jacobian(pose), -1, -2)
         wrench = np.broadcast_to(_six(external_wrench, "wrench", _SCREW), transposed.shape[:-1])
-        rank: Array = np.asarray(np.linalg.matrix_rank(np.nan_to_num(transposed)))
-        singular = np.less(rank, 6)
+        values = np.linalg.svd(np.nan_to_num(transposed), compute_uv=False)
+        singular: Array = values[..., -1] <= 6.0 * np.finfo(float).eps * values[..., 0]
         safe = np.where(singular[..., None, None], np.eye(6), transposed)
         return np.where(singular[..., None], np.nan, np.linalg.solve(safe, -wrench[..., None])[..., 0])
 
