@@ -17,6 +17,7 @@ from design.errors import InvalidRegion
 
 Array = np.ndarray
 Interval = float | tuple[float, float]
+_ROUNDING = 1e-12  # m or rad
 
 
 class Region(ABC):
@@ -35,6 +36,14 @@ class Region(ABC):
     @abstractmethod
     def dimension(self) -> int:
         """k, how many coordinates are free."""
+
+    @abstractmethod
+    def contains(self, poses: Array, names: Sequence[str]) -> Array:
+        """(..., n) -> (...,) whether each pose is inside, the boundary included up to rounding."""
+
+    @abstractmethod
+    def outline(self) -> list[Array]:
+        """Edges of the region's x, y, z part as polylines (k, 3), for drawing."""
 
     def check(self, names: Sequence[str]) -> None:
         """Check that the region speaks of exactly these coordinates.
@@ -100,6 +109,17 @@ class Box(Region):
                 pose[..., i] = low
         return pose
 
+    def contains(self, poses: Array, names: Sequence[str]) -> Array:
+        """Each coordinate between its bounds."""
+        low, high = np.array([self._intervals[name] for name in names]).T
+        return ((poses >= low - _ROUNDING) & (poses <= high + _ROUNDING)).all(axis=-1)
+
+    def outline(self) -> list[Array]:
+        """The box's edges."""
+        sides = [self._intervals.get(name, (0.0, 0.0)) for name in ("x", "y", "z")]
+        vertices = np.array(list(product(*sides)))
+        return [vertices[[i, j]] for i in range(8) for j in range(i + 1, 8) if (i ^ j) in (1, 2, 4)]
+
 
 class Cylinder(Region):
     """x and y inside a circle about the z axis, the other coordinates in intervals.
@@ -140,6 +160,19 @@ class Cylinder(Region):
         pose[..., names.index("y")] = radius * np.sin(azimuth)
         pose[..., [names.index(name) for name in others]] = self._rest.from_unit(unit[..., 2:], others)
         return pose
+
+    def contains(self, poses: Array, names: Sequence[str]) -> Array:
+        """Inside the circle, and the other coordinates between their bounds."""
+        x, y = poses[..., names.index("x")], poses[..., names.index("y")]
+        others = [name for name in names if name not in ("x", "y")]
+        rest = self._rest.contains(poses[..., [names.index(name) for name in others]], others)
+        return rest & (np.hypot(x, y) <= self.radius + _ROUNDING)
+
+    def outline(self) -> list[Array]:
+        """The circles at both ends."""
+        turn = np.linspace(0.0, 2.0 * math.pi, 97)
+        ring = self.radius * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+        return [np.column_stack([ring, np.full(97, z)]) for z in self._rest.intervals.get("z", (0.0,))]
 
 
 def _interval(name: str, value: Interval) -> tuple[float, float]:

@@ -14,6 +14,7 @@ from design.region import Region
 from kinematics import FviBounds, Mechanism
 
 Array = np.ndarray
+DENSE = 1_000_000  # poses of a grid that is far denser than any that is solved on
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ def worst_poses(
     *,
     bounds: FviBounds | None = None,
     characteristic_length: float | None = None,
-    about: int = 1_000_000,
+    about: int = DENSE,
     descents: int = 64,
 ) -> WorstPoses:
     """Local minima of a margin, from a grid of about that many poses and descents between them.

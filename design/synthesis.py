@@ -14,7 +14,7 @@ import numpy as np
 from design.errors import SynthesisFailed
 from design.nlp import NlpSolution, Problem, active_sets, solve
 from design.region import Region
-from design.search import WorstPoses, worst_poses
+from design.search import DENSE, WorstPoses, worst_poses
 from kinematics import Mechanism
 
 Array = np.ndarray
@@ -73,7 +73,7 @@ def synthesise(
     *,
     seed: int = 0,
     starts: int = 3,
-    about: int = 1_000_000,
+    about: int = DENSE,
     max_rounds: int = 20,
     tolerance: float = 1e-4,
     progress: Progress = lambda _: None,
@@ -94,13 +94,13 @@ def synthesise(
     """
     names = problem.robot.pose_names
     region.check(names)
-    before = _look(problem, problem.robot, region, about)
+    before = worst_of(problem, problem.robot, region, about)
     poses = np.unique(np.concatenate([region.corners(names), region.grid(names, (3,) * region.dimension)]), axis=0)
     solution = _best_start(problem, poses, seed, starts, progress)
     rounds: list[Round] = []
     while len(rounds) < max_rounds:
         robot = _robot(problem, solution.values)
-        after = _look(problem, robot, region, about)
+        after = worst_of(problem, robot, region, about)
         rounds.append(_round(problem, solution, after, len(poses)))
         progress(f"round {len(rounds)}: {rounds[-1]}")
         if rounds[-1].settled(tolerance):
@@ -154,8 +154,8 @@ def _robot(problem: Problem, values: Array) -> Mechanism:
     return type(problem.robot)(problem.robot.Geometry.from_vector(vector), problem.robot.inertia)
 
 
-def _look(problem: Problem, robot: Mechanism, region: Region, about: int) -> dict[str, WorstPoses]:
-    """Worst poses of the objective and of each requirement, by margin."""
+def worst_of(problem: Problem, robot: Mechanism, region: Region, about: int = DENSE) -> dict[str, WorstPoses]:
+    """Worst poses of the objective and of each requirement, by margin, from a grid of about that many poses."""
     margins = dict.fromkeys([problem.objective, *(r.margin for r in problem.requirements)])
     return {
         margin: worst_poses(

@@ -110,6 +110,11 @@ class GeometryRecord:
         """Field names to plain numbers, lists or lists of rows, for files."""
         return {f.name: np.asarray(getattr(self, f.name)).tolist() for f in fields(self)}
 
+    @classmethod
+    def descriptions(cls) -> dict[str, str]:
+        """What each field means, by its name."""
+        return {f.name: f.metadata["doc"] for f in fields(cls)}
+
     @property
     def digest(self) -> str:
         """SHA-256 of the numbers, to tell which geometry a file was made for."""

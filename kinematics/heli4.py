@@ -76,6 +76,7 @@ class Heli4(RodLevel):
     inertia: Heli4Inertia
     pose_names = ("x", "y", "z", "theta")
     joint_names = ("q1", "q2", "q3", "q4")
+    joint_units = ("rad",) * 4
     rotations = (3,)
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.7, 0.0)
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=150.0)

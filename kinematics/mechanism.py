@@ -37,6 +37,7 @@ class Mechanism(ABC):
     Inertia: ClassVar[type]  # a frozen dataclass of masses, with defaults
     pose_names: ClassVar[tuple[str, ...]]
     joint_names: ClassVar[tuple[str, ...]]
+    joint_units: ClassVar[tuple[str, ...]]  # rad or m
     rotations: ClassVar[tuple[int, ...]]  # which pose coordinates are angles
     home: ClassVar[tuple[float, ...]]  # a pose well inside the workspace
     fvi_bounds: ClassVar[FviBounds]

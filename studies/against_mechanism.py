@@ -1,0 +1,146 @@
+"""What a study may say of its mechanism: the keys that follow from it, and the faults that only it shows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from studies.errors import KeyPath
+from studies.mechanisms import GeometryField, geometry_fields, shape
+from studies.schema import (
+    REGION_KINDS,
+    BoxRegion,
+    CylinderRegion,
+    Optimise,
+    Requirement,
+    Study,
+    Sum,
+    table_of,
+)
+from studies.units import Dimension, Key, Table
+
+if TYPE_CHECKING:
+    from kinematics import Mechanism
+
+_TURN = 2 * math.pi * (1 + 1e-12)  # converting degrees rounds
+
+
+def study_table(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> Table:
+    """The keys of a study of `mechanism`; the region's follow from its kind in `raw`."""
+    fields = geometry_fields(mechanism)
+    lengths = Key("a list out of", choices=_lengths(fields))
+    margins = Key("one of", choices=mechanism.margins)
+    optimise = {
+        "variables": Table({name: _bounds(field) for name, field in fields.items()}),
+        "sums": table_of(Sum, rows=True).updated({"fields": lengths}),
+    }
+    return table_of(Study).updated(
+        {
+            "geometry": Table({name: _dimensions(field) for name, field in fields.items()}),
+            "region": _region_table(mechanism, raw.get("region")),
+            "optimise": table_of(Optimise).updated(optimise),
+            "requirement": table_of(Requirement, rows=True).updated({"margin": margins}),
+        }
+    )
+
+
+def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:
+    """The paths of `data` (in SI) at odds with `mechanism`; what the models reject is left to them."""
+    fields = geometry_fields(mechanism)
+    for name, value in _table(data, "geometry").items():
+        field = fields[name]
+        if shape(value) != field.shape or not all(field.allows(n, n) for n in _numbers(value)):
+            yield ("geometry", name)
+    if isinstance(data.get("region"), dict):
+        yield from _region_faults(data["region"], mechanism)
+    optimise = _table(data, "optimise")
+    for name, bounds in _table(optimise, "variables").items():
+        field = fields[name]
+        pairs = bounds if field.shape and isinstance(bounds, tuple) else (bounds,)
+        ends = [_numbers(pair) for pair in pairs]
+        if len(ends) != math.prod(field.shape) or any(
+            len(pair) != 2 or not field.allows(pair[0], pair[1]) for pair in ends
+        ):
+            yield ("optimise", "variables", name)
+    for i, names in _rows(optimise, "sums", "fields"):
+        if isinstance(names, tuple) and not set(map(str, names)) <= set(_lengths(fields)):
+            yield ("optimise", "sums", i, "fields")
+    for i, margin in _rows(data, "requirement", "margin"):
+        if margin not in mechanism.margins:
+            yield ("requirement", i, "margin")
+
+
+def _region_faults(region: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:
+    if region.get("kind") not in REGION_KINDS:
+        return
+    for name in _coordinates(mechanism, region["kind"]):
+        interval = region.get(name)
+        if interval is None:
+            yield ("region", name)
+        elif _pose_dimension(name) is Dimension.ANGLE:
+            angles = _numbers(interval)
+            if angles and angles[-1] - angles[0] > _TURN:
+                yield ("region", name)
+
+
+def _region_table(mechanism: type[Mechanism], region: object) -> Table:
+    kind = region.get("kind") if isinstance(region, dict) else None
+    own = table_of(BoxRegion if kind == "box" else CylinderRegion)
+    return own.updated({name: _coordinate(name) for name in _coordinates(mechanism, kind)})
+
+
+def _coordinates(mechanism: type[Mechanism], kind: object) -> tuple[str, ...]:
+    """The pose coordinates that a region of this kind gives one by one."""
+    disc = ("x", "y") if kind == "cylinder" else ()
+    return tuple(name for name in mechanism.pose_names if name not in disc)
+
+
+def _coordinate(name: str) -> Key:
+    dimension = _pose_dimension(name)
+    reach = ", at most a turn apart" if dimension is Dimension.ANGLE else ""
+    return Key(f"a number, or low < high{reach}", dimension)
+
+
+def _pose_dimension(name: str) -> Dimension:
+    return Dimension.LENGTH if name in {"x", "y", "z"} else Dimension.ANGLE
+
+
+def _dimensions(field: GeometryField) -> Key:
+    count = " x ".join(map(str, field.shape)) or "a"
+    plural = "s" if field.shape else ""
+    return Key(f"{count} finite number{plural}{_condition(field)}", Dimension(field.dimension))
+
+
+def _bounds(field: GeometryField) -> Key:
+    return Key(f"low < high{_condition(field)}", Dimension(field.dimension))
+
+
+def _condition(field: GeometryField) -> str:
+    if field.dimension == Dimension.LENGTH_PER_TURN:
+        return ", 0 left out"
+    if field.minimum is None:
+        return ""
+    return f", above {field.minimum:g} m" if field.minimum else ", above 0"
+
+
+def _lengths(fields: Mapping[str, GeometryField]) -> tuple[str, ...]:
+    return tuple(name for name, field in fields.items() if field.dimension == Dimension.LENGTH)
+
+
+def _table(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    table = data.get(name)
+    return table if isinstance(table, dict) else {}
+
+
+def _rows(data: Mapping[str, Any], name: str, key: str) -> Iterator[tuple[int, Any]]:
+    rows = data.get(name)
+    for i, row in enumerate(rows if isinstance(rows, tuple) else ()):
+        if isinstance(row, dict) and key in row:
+            yield i, row[key]
+
+
+def _numbers(value: object) -> list[float]:
+    if isinstance(value, tuple):
+        return [number for entry in value for number in _numbers(entry)]
+    return [value] if isinstance(value, int | float) else []

@@ -1,0 +1,162 @@
+"""What the command line prints: tables for people on a terminal or in a pipe, one JSON object for machines."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Column, Table
+from rich.text import Text
+
+from studies.check import Row
+from studies.pipeline import Outcome, Timing
+
+
+@contextmanager
+def progress() -> Iterator[Callable[[str], None]]:
+    """A spinner with the current step on a terminal's standard error; silent in a pipe."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield lambda _: None
+        return
+    with console.status("starting") as status:
+
+        def tell(step: str) -> None:
+            status.update(step)
+            console.log(step, highlight=False)
+
+        yield tell
+
+
+def print_json(data: dict[str, Any]) -> None:
+    """One object on standard output; a number that is not finite becomes null, as JSON has none."""
+    json.dump(_plain(data), sys.stdout, indent=2)
+    sys.stdout.write("\n")
+
+
+def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """A table on standard output, never narrower than its contents in a pipe."""
+    console = Console()
+    table = Table(
+        *(Column(Text(c)) for c in columns),
+        title=Text(title),
+        title_justify="left",
+        box=None,
+        pad_edge=False,
+        highlight=False,
+    )
+    for row in rows:
+        table.add_row(*(Text(str(cell)) for cell in row))
+    width = None if console.is_terminal else max(console.width, 160)
+    Console(width=width).print(table, soft_wrap=not console.is_terminal)
+    Console().print()
+
+
+def print_outcome(outcome: Outcome, files: list[Path], as_json: bool) -> None:
+    """The margins, the geometry, the cycle and the files written."""
+    if as_json:
+        print_json(_outcome_data(outcome, files))
+        return
+    wanted = {r.margin: f">= {r.at_least:g}" for r in outcome.problem.requirements}
+    rows = [
+        (
+            margin,
+            wanted.get(margin, ""),
+            f"{outcome.prototype[margin].value:.6f}" if outcome.prototype else "",
+            f"{worst.value:.6f}",
+            _pose(worst.pose),
+        )
+        for margin, worst in outcome.worst.items()
+    ]
+    sampled = next(iter(outcome.worst.values())).sampled
+    print_table(
+        f"Worst over the region ({sampled} poses and descents)",
+        ("margin", "wanted", "prototype", "result", "at pose"),
+        rows,
+    )
+    changed = outcome.problem.robot.geometry.as_dict()
+    geometry = [
+        (name, str(changed[name]), str(value))
+        for name, value in outcome.robot.geometry.as_dict().items()
+        if value != changed[name]
+    ]
+    if geometry:
+        print_table("Geometry", ("field", "prototype", "result"), geometry)
+    if outcome.synthesis:
+        print_table("Held back by", ("active constraint",), [(item,) for item in outcome.synthesis.active])
+    if outcome.timing:
+        print_timing(outcome.timing, [], False)
+    _print_files(files)
+
+
+def print_timing(timing: Timing, files: list[Path], as_json: bool) -> None:
+    """The cycle's figures and peaks."""
+    if as_json:
+        print_json({**timing.figures(), "seconds": timing.seconds, "files": files})
+        return
+    figures = {k: v for k, v in timing.figures().items() if k != "peak_over_limit"}
+    print_table(
+        "Cycle", ("figure", "value"), [(k, f"{v:.6g}" if isinstance(v, float) else v) for k, v in figures.items()]
+    )
+    verification = timing.cycle.pieces[0].timed.verification
+    print_table(
+        "Way there, between the gridpoints too",
+        ("quantity", "peak", "limit", "peak over limit", "joint", "at [s]"),
+        verification.rows(),
+    )
+    _print_files(files)
+
+
+def print_checks(found: dict[str, list[Row]], as_json: bool) -> None:
+    """Each claim of each study."""
+    if as_json:
+        data = {name: [{**vars(row), "holds": row.holds} for row in rows] for name, rows in found.items()}
+        holds = all(row.holds for rows in found.values() for row in rows)
+        print_json({"holds": holds, "studies": data})
+        return
+    for name, rows in found.items():
+        failed = sum(not row.holds for row in rows)
+        verdict = "all holds" if failed == 0 else f"{failed} of {len(rows)} FAIL"
+        table = [
+            ("ok" if row.holds else "FAIL", row.what, row.expected, row.found, f"{row.margin:.3g}", row.where)
+            for row in rows
+        ]
+        print_table(f"{name}: {verdict}", ("", "claim", "expected", "found", "margin", "at pose"), table)
+
+
+def _outcome_data(outcome: Outcome, files: list[Path]) -> dict[str, Any]:
+    return {
+        "study": outcome.study.name,
+        "geometry": outcome.robot.geometry.as_dict(),
+        "worst": {m: {"value": w.value, "pose": w.pose.tolist()} for m, w in outcome.worst.items()},
+        "prototype": {m: w.value for m, w in outcome.prototype.items()} if outcome.prototype else None,
+        "active": outcome.synthesis.active if outcome.synthesis else [],
+        "rounds": [vars(r) for r in outcome.synthesis.rounds] if outcome.synthesis else [],
+        "cycle": outcome.timing.figures() if outcome.timing else None,
+        "files": files,
+    }
+
+
+def _print_files(files: list[Path]) -> None:
+    for file in files:
+        print(f"wrote {file}")
+
+
+def _pose(pose: Iterable[float]) -> str:
+    return f"({', '.join(f'{round(v, 6) + 0.0:.4g}' for v in pose)})"
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    return str(value) if isinstance(value, Path) else value

@@ -1,0 +1,80 @@
+"""What is wrong with a study file, and where."""
+
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from kinematics.errors import LinkwrightError
+
+KeyPath = tuple[str | int, ...]  # ("requirement", 0, "margin"): table, row, key
+
+_LONGEST_FOUND = 80  # characters
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing to mend: `key` of `file` at `line` holds `found`, where `expected` was asked.
+
+    `key` is "" and `line` None when the file as a whole is meant.
+    """
+
+    file: Path
+    key: str
+    line: int | None
+    found: str
+    expected: str
+
+    def __str__(self) -> str:
+        where = f"{self.file}" if self.line is None else f"{self.file}:{self.line}"
+        what = f"{where}: {self.key}" if self.key else where
+        return f"{what}: found {self.found}; expected {self.expected}"
+
+
+class StudyError(LinkwrightError):
+    """A study file cannot be used; `str()` gives one line a problem.
+
+    `problems` holds them all by line; `file`, `key`, `line`, `found`, `expected` are the first one's.
+    """
+
+    def __init__(self, problems: Sequence[Problem]) -> None:
+        super().__init__(problems)
+        self.problems = tuple(sorted(problems, key=lambda problem: problem.line or 0))
+        first = self.problems[0]
+        self.file, self.key, self.line = first.file, first.key, first.line
+        self.found, self.expected = first.found, first.expected
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self.problems))
+
+
+def dotted(path: KeyPath) -> str:
+    """`path` as the file spells it; a row of an array of tables is told by its line, not by a number."""
+    names = (part for part in path if isinstance(part, str))
+    return _cut(".".join(name if re.fullmatch(r"[\w-]+", name) else json.dumps(name) for name in names))
+
+
+def spelled(value: object) -> str:
+    """A TOML value on one short line."""
+    return _cut(_spelled(value))
+
+
+def _spelled(value: object) -> str:
+    match value:
+        case str():
+            return json.dumps(value, ensure_ascii=False)
+        case bool():
+            return str(value).lower()
+        case int() if value.bit_length() > 64:
+            return hex(value)  # Python refuses to print a very long integer in decimal
+        case list():
+            return f"[{', '.join(map(_spelled, value))}]"
+        case dict():
+            return "a table" if value else "an empty table"
+        case _:
+            return str(value)
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= _LONGEST_FOUND else f"{text[:_LONGEST_FOUND]}..."

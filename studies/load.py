@@ -1,0 +1,99 @@
+"""From a `study.toml` to a checked `Study`, with every fault of the file reported at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pydantic import ValidationError
+
+from studies.against_mechanism import faults, study_table
+from studies.errors import KeyPath, Problem, StudyError, spelled
+from studies.mechanisms import mechanism_class, mechanism_names
+from studies.schema import Study, table_of
+from studies.toml_file import TomlFile, read_toml
+from studies.units import Conversion, Key, Table
+
+if TYPE_CHECKING:
+    from kinematics import Mechanism
+
+# Without a known mechanism nothing can be said about these.
+_OF_THE_MECHANISM = ("geometry", "region", "optimise", "requirement")
+
+
+def load_study(path: Path) -> Study:
+    """Read the study file at `path`; all values of the result are in SI and radians.
+
+    Raises StudyError, which holds every fault with its key and line.
+    """
+    file = read_toml(path)
+    mechanism = _mechanism(file.data.get("mechanism"))
+    conversion = Conversion()
+    raw = file.data
+    if mechanism:
+        table = study_table(mechanism, raw)
+        data = conversion.to_si(raw, table)
+        wrong = set(faults(data, mechanism))
+    else:
+        table = table_of(Study).updated({"mechanism": Key("one of", choices=mechanism_names())})
+        data = conversion.to_si({key: raw[key] for key in raw if key not in _OF_THE_MECHANISM}, table)
+        wrong = {("mechanism",)}
+        conversion.reported.update((name,) for name in _OF_THE_MECHANISM)
+    try:
+        study = Study.model_validate(data | {"name": path.resolve().parent.name})
+    except ValidationError as error:
+        wrong.update(_invalid(error, table))
+    problems = _problems(file, table, conversion, wrong)
+    if problems:
+        raise StudyError(problems)
+    return study
+
+
+def _mechanism(name: object) -> type[Mechanism] | None:
+    return mechanism_class(name) if isinstance(name, str) and name in mechanism_names() else None
+
+
+def _invalid(error: ValidationError, table: Table) -> Iterator[KeyPath]:
+    """The SI paths that the models reject."""
+    for detail in error.errors(include_url=False, include_context=False, include_input=False):
+        path: list[str | int] = []
+        node = table
+        for part in detail["loc"]:
+            # The rest of pydantic's path tells which variant of a union failed, or which entry of an array.
+            if isinstance(part, int) and node.rows:
+                path.append(part)
+            elif isinstance(part, str) and part in node.keys:
+                path.append(part)
+                inner = node.keys[part]
+                if isinstance(inner, Key):
+                    break
+                node = inner
+        # A region of no known kind is rejected as a whole.
+        yield (*path, "kind") if detail["type"].startswith("union_tag") else tuple(path)
+
+
+def _problems(file: TomlFile, table: Table, conversion: Conversion, wrong: set[KeyPath]) -> list[Problem]:
+    problems = [file.problem(f.path, f.found, f.expected) for f in conversion.findings]
+    for path in sorted(wrong, key=str):
+        if path in conversion.reported and path not in conversion.spelling:
+            continue  # a misspelt key is not missing as well
+        spelling = conversion.spelling.get(path, path)
+        try:
+            value: Any = file.value(spelling)
+            found = spelled(value)
+        except LookupError:
+            value, found = None, "nothing"
+        node = _node(table, path)
+        suffix = str(spelling[-1])[len(str(path[-1])) + 1 :]
+        expected = node.describe(suffix, value) if isinstance(node, Key) else node.describe()
+        problems.append(file.problem(spelling, found, expected))
+    return problems
+
+
+def _node(table: Table, path: KeyPath) -> Key | Table:
+    node: Key | Table = table
+    for part in path:
+        if isinstance(part, str) and isinstance(node, Table):
+            node = node.keys[part]
+    return node

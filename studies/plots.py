@@ -1,0 +1,167 @@
+"""The report's pictures, as PNG bytes; nothing is shown on a screen."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from design import Region
+from design.nlp import Problem
+from kinematics import Mechanism
+
+Array = np.ndarray
+_COLOURS = ("#0b6e8e", "#d1495b", "#edae49", "#3c7a3f", "#6a4c93", "#8a5a44")
+_LINES = {
+    "base": ("#888888", 1.1),
+    "arm": (_COLOURS[0], 3.5),
+    "platform": (_COLOURS[1], 3.0),
+    "tool": (_COLOURS[2], 2.0),
+}
+_STYLE: Any = {
+    "font.size": 9,
+    "axes.titlesize": 10,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.alpha": 0.25,
+    "grid.linewidth": 0.6,
+}
+
+
+@dataclass(frozen=True)
+class Section:
+    """Worst value of a margin over all other coordinates, on a grid of two.
+
+    Attributes:
+        names: the two coordinates.
+        first, second: (a,), (b,) their values.
+        worst: (b, a), NaN outside the region.
+    """
+
+    names: tuple[str, str]
+    first: Array
+    second: Array
+    worst: Array
+
+
+def section_of(problem: Problem, robot: Mechanism, region: Region, margin: str, size: int = 61) -> Section:
+    """The region's first two free coordinates as a plane, the worst over the others."""
+    names = robot.pose_names
+    free = [n for n in names if region.intervals[n][0] < region.intervals[n][1]]
+    plane, rest = free[:2], free[2:]
+    axes = {n: np.linspace(*region.intervals[n], size if n in plane else 17) for n in free}
+    others = np.stack(np.meshgrid(*(axes[n] for n in rest), indexing="ij"), axis=-1).reshape(-1, len(rest))
+    first, second = axes[plane[0]], axes[plane[1]]
+    poses = np.empty((size, size, len(others), len(names)))
+    for k, name in enumerate(names):
+        poses[..., k] = region.intervals[name][0]
+    poses[..., names.index(plane[0])] = first[None, :, None]
+    poses[..., names.index(plane[1])] = second[:, None, None]
+    poses[..., [names.index(n) for n in rest]] = others
+    values = robot.margin(margin, poses, problem.fvi_bounds, problem.characteristic_length)
+    worst = np.where(np.isnan(values), -np.inf, values).min(axis=-1)
+    worst[~region.contains(poses[:, :, 0], names)] = np.nan
+    return Section((plane[0], plane[1]), first, second, np.where(np.isinf(worst), np.nan, worst))
+
+
+def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
+    """Each robot in 3-D at its home pose, in the same scale, with the workspace's edge."""
+    with mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(5.2 * len(robots), 4.8), layout="constrained")
+        for k, (label, robot) in enumerate(robots.items(), start=1):
+            axes = figure.add_subplot(1, len(robots), k, projection="3d")
+            lines = robot.polylines(np.array(robot.home))
+            for name, line in lines.items():
+                kind = name.split()[0]
+                colour = {"base": "#888888", "arm": _COLOURS[0], "rods": "#444444", "tool": _COLOURS[2]}.get(
+                    kind, _COLOURS[1]
+                )
+                width = {"arm": 3.5, "platform": 3.0, "tool": 2.0}.get(kind, 1.1)
+                axes.plot(*line.T, color=colour, linewidth=width)
+            for edge in region.outline():
+                axes.plot(*edge.T, color="#3c7a3f", linewidth=0.8, alpha=0.7)
+            axes.set(title=label, xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
+            axes.set_aspect("equal")
+            axes.view_init(elev=18, azim=-60)
+        return _png(figure)
+
+
+def map_picture(sections: dict[str, Section], title: str, bound: float | None) -> bytes:
+    """Worst value over the plane, one panel a robot, same colours; the bound as a red line where it is crossed."""
+    with mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(4.9 * len(sections), 4.2), layout="constrained")
+        everything = np.concatenate([s.worst[np.isfinite(s.worst)] for s in sections.values()])
+        panels: list[Axes] = list(np.atleast_1d(figure.subplots(1, len(sections), sharey=True)))
+        for axes, (label, section) in zip(panels, sections.items(), strict=True):
+            mesh = axes.pcolormesh(
+                section.first,
+                section.second,
+                section.worst,
+                cmap="viridis",
+                vmin=everything.min(),
+                vmax=everything.max(),
+            )
+            low = float(np.nanmin(section.worst))
+            if bound is not None and low < bound < np.nanmax(section.worst):
+                axes.contour(section.first, section.second, section.worst, levels=[bound], colors="red")
+            axes.set(title=f"{label}: least {low:.3f} on this grid", xlabel=f"{section.names[0]} [m]")
+            axes.set_aspect("equal")
+            axes.grid(False)
+        panels[0].set_ylabel(f"{sections[next(iter(sections))].names[1]} [m]")
+        figure.colorbar(mesh, ax=panels, label=title)
+        return _png(figure)
+
+
+def path_picture(poses: Array, time: Array, names: Sequence[str]) -> bytes:
+    """The tool's path in its plane, and each pose coordinate over time."""
+    with mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(9.8, 3.2), layout="constrained")
+        left, right = figure.subplots(1, 2)
+        across = np.hypot(*(poses[:, :2] - poses[0, :2]).T)
+        left.plot(1e3 * across, 1e3 * (poses[:, 2] - poses[0, 2]), color=_COLOURS[0])
+        left.set(title="path of the tool", xlabel="across [mm]", ylabel="up [mm]")
+        left.set_aspect("equal", adjustable="datalim")
+        for k, name in enumerate(names):
+            unit, factor = ("mm", 1e3) if name in "xyz" else ("deg", 180 / np.pi)
+            right.plot(1e3 * time, factor * (poses[:, k] - poses[0, k]), color=_COLOURS[k], label=f"{name} [{unit}]")
+        right.set(title="pose from the start", xlabel="time [ms]")
+        right.legend(frameon=False)
+        return _png(figure)
+
+
+def motion_picture(time: Array, rows: Sequence[tuple[str, Array, Array | None]], joints: Sequence[str]) -> bytes:
+    """Joint quantities over time, one panel each, their limits dashed.
+
+    Args:
+        time: (k,) [s].
+        rows: label, values (k, m), limits (m,) or None.
+        joints: the joints' names.
+    """
+    with mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(9.8, 2.3 * len(rows)), layout="constrained")
+        panels: list[Axes] = list(np.atleast_1d(figure.subplots(len(rows), 1, sharex=True)))
+        for axes, (label, values, limits) in zip(panels, rows, strict=True):
+            for k, name in enumerate(joints):
+                axes.plot(1e3 * time, values[:, k], color=_COLOURS[k % len(_COLOURS)], label=name, linewidth=1.1)
+            for limit in () if limits is None else np.unique(np.abs(limits)):
+                for sign in (-1, 1):
+                    axes.axhline(sign * limit, color="#b00020", linestyle="--", linewidth=0.9)
+            axes.set_ylabel(label)
+        panels[0].legend(frameon=False, ncols=len(joints), loc="upper right")
+        panels[-1].set_xlabel("time [ms]")
+        return _png(figure)
+
+
+def _png(figure: Figure) -> bytes:
+    figure.set_dpi(130)
+    buffer = io.BytesIO()
+    FigureCanvasAgg(figure).print_png(buffer, metadata={"Software": None})
+    return buffer.getvalue()

@@ -1,0 +1,148 @@
+"""The report: one HTML file that opens offline, every figure in it printed from the run's own data."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from studies import plots
+from studies.pipeline import Outcome, Timing
+from trajectory.motion import motion_along
+
+_MAPPED = ("fvi", "internal_determinant")
+_TITLES = {
+    "fvi": "FVI, worst over the other coordinates",
+    "internal_determinant": "|(59)| over d^4 l^4, worst over the other coordinates",
+}
+
+
+def html_report(outcome: Outcome, command: str) -> str:
+    """The whole report as text; `command` made it."""
+    environment = Environment(
+        loader=PackageLoader("studies"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("report.html").render(
+        title=outcome.study.title,
+        mechanism=outcome.study.mechanism,
+        version=version("linkwright"),
+        command=command,
+        digest=outcome.study.digest,
+        geometry_digest=outcome.robot.geometry.digest,
+        characteristic_length=outcome.problem.characteristic_length,
+        bounds=outcome.problem.fvi_bounds,
+        region=repr(outcome.region),
+        geometry=_geometry_rows(outcome),
+        margins=_margin_rows(outcome),
+        sampled=next(iter(outcome.worst.values())).sampled,
+        synthesis=outcome.synthesis,
+        pictures=[(title, _embedded(png)) for title, png in _pictures(outcome)],
+        timings=_timing_rows(outcome),
+        peaks=_peak_rows(outcome.timing) if outcome.timing else [],
+        setpoints=outcome.timing.setpoints if outcome.timing else None,
+        timing=outcome.timing,
+    )
+
+
+def _geometry_rows(outcome: Outcome) -> list[tuple[str, str, str, str]]:
+    """Field, prototype, result, what it means."""
+    before, after = outcome.problem.robot.geometry, outcome.robot.geometry
+    return [
+        (name, _numbers(getattr(before, name)), _numbers(getattr(after, name)), doc)
+        for name, doc in after.descriptions().items()
+    ]
+
+
+def _margin_rows(outcome: Outcome) -> list[tuple[str, str, str, str, str]]:
+    """Margin, wanted, prototype's worst, result's worst, where."""
+    wanted = {r.margin: f"at least {r.at_least:g}" for r in outcome.problem.requirements}
+    wanted.setdefault(outcome.problem.objective, "as large as possible" if outcome.synthesis else "")
+    return [
+        (
+            margin,
+            wanted.get(margin, ""),
+            f"{outcome.prototype[margin].value:.6f}" if outcome.prototype else "",
+            f"{worst.value:.6f}",
+            ", ".join(
+                f"{n} {round(v, 6) + 0.0:.4g}" for n, v in zip(outcome.robot.pose_names, worst.pose, strict=True)
+            ),
+        )
+        for margin, worst in outcome.worst.items()
+    ]
+
+
+def _timing_rows(outcome: Outcome) -> list[tuple[str, list[tuple[str, str]]]]:
+    """Label, figures of each cycle that was timed."""
+    timings = {"result": outcome.timing, "prototype": outcome.prototype_timing}
+    return [(label, _timing_figures(timing)) for label, timing in timings.items() if timing]
+
+
+def _timing_figures(timing: Timing) -> list[tuple[str, str]]:
+    figures = timing.figures()
+    on_bus = figures["cycle_on_the_bus"]
+    return [
+        ("law", figures["law"]),
+        ("half cycle [s]", f"{figures['half_cycle']:.6f}"),
+        ("cycle on the bus, there and back [s]", f"{on_bus:.6f}"),
+        ("cycles per second", f"{1 / on_bus:.3f}"),
+        ("repair: time stretched by", f"{figures['repair_factor']:.6f}"),
+        ("worst RMS over peak torque", f"{figures['worst_rms_over_peak_torque']:.3f}"),
+    ]
+
+
+def _peak_rows(timing: Timing) -> list[Sequence[str]]:
+    rows: list[Sequence[str]] = []
+    for way, piece in zip(("there", "back"), timing.cycle.pieces, strict=True):
+        rows += [(way, *row) for row in piece.timed.verification.rows()]
+    return rows
+
+
+def _pictures(outcome: Outcome) -> list[tuple[str, bytes]]:
+    """Title and PNG of each picture."""
+    robots = {"result": outcome.robot}
+    if outcome.prototype is not None:
+        robots = {"prototype": outcome.problem.robot, **robots}
+    pictures = [("Mechanism at home, with the workspace's edge", plots.mechanism_picture(robots, outcome.region))]
+    bounds = {r.margin: r.at_least for r in outcome.problem.requirements} | {outcome.problem.objective: 1.0}
+    for margin in (m for m in _MAPPED if m in outcome.robot.margins):
+        sections = {
+            label: plots.section_of(outcome.problem, robot, outcome.region, margin) for label, robot in robots.items()
+        }
+        pictures.append((_TITLES[margin], plots.map_picture(sections, margin, bounds.get(margin))))
+    return pictures + (_motion_pictures(outcome.timing) if outcome.timing else [])
+
+
+def _motion_pictures(timing: Timing) -> list[tuple[str, bytes]]:
+    cycle = timing.cycle
+    piece, robot = cycle.pieces[0], cycle.robot
+    times = np.linspace(0.0, piece.timed.law.duration, 1501)
+    motion = motion_along(robot, piece.path, piece.timed.law.at(times), piece.payload)
+    count = len(robot.joint_names)
+    unit = "rad" if set(robot.joint_units) == {"rad"} else "SI"
+    rows: list[tuple[str, Any, Any]] = [
+        (f"position [{unit}]", motion.joints.position, None),
+        (f"speed [{unit}/s]", motion.joints.first, cycle.limits.of_joints("speed", count)),
+        (f"acceleration [{unit}/s²]", motion.joints.second, cycle.limits.of_joints("acceleration", count)),
+        ("torque [N m]" if unit == "rad" else "effort [SI]", motion.torque, cycle.limits.of_joints("torque", count)),
+    ]
+    return [
+        ("Path of the half cycle", plots.path_picture(motion.tool.pose, times, robot.pose_names)),
+        ("Joints on the way there, limits dashed", plots.motion_picture(times, rows, robot.joint_names)),
+    ]
+
+
+def _embedded(png: bytes) -> str:
+    return "data:image/png;base64," + base64.b64encode(png).decode()
+
+
+def _numbers(value: float | tuple[float, ...]) -> str:
+    values = value if isinstance(value, tuple) else (value,)
+    return ", ".join(f"{v:.6g}" for v in values)

@@ -1,0 +1,127 @@
+"""A small mechanism that stands in for the real ones, and a complete study of it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar
+
+import pytest
+
+import kinematics
+
+STUDY = """\
+title = "Fake on its prototype"
+mechanism = "Fake"
+
+[geometry]
+arm_length_mm = 351
+azimuths_deg = [0, 180, 90, 270]
+
+[region]
+kind = "cylinder"
+radius = 0.5
+z = [-0.80, -0.60]
+theta_deg = [-180, 180]
+
+[fvi]
+joint_speed = 20
+joint_effort = 127
+speed = 2.5
+force = 150
+characteristic_length = 0.00796
+
+[optimise]
+seed = 0
+starts = 3
+[optimise.variables]
+arm_length = [0.25, 0.50]
+pitch_mm = [20, 120]
+[[optimise.sums]]
+fields = ["arm_length", "rod_length"]
+at_most = 1.151
+
+[[requirement]]
+margin = "J_q"
+at_least = 0.3
+
+[trajectory]
+law = "toppra"
+grid = 2000
+period = 0.001
+[trajectory.cycle]
+lift_mm = 25
+span_mm = 305
+blend_mm = 24.9
+turn_deg = 180
+pick = [-0.1525, 0.0, -0.80]
+heading_deg = 0
+payload = 1.0
+[trajectory.limits]
+speed = 20
+acceleration = 450
+torque = 127
+jerk = 1e5
+"""
+
+MINIMAL = """\
+title = "t"
+mechanism = "Fake"
+[region]
+kind = "box"
+x = 0
+y = [-0.25, 0.25]
+z_mm = [-200, 200]
+theta_deg = 90
+"""
+
+
+def length(default: Any, minimum: float | None = None) -> Any:
+    return field(default=default, metadata={"dimension": "length", "minimum": minimum})
+
+
+class Fake:
+    """As much of a mechanism as a study file speaks of."""
+
+    pose_names: ClassVar[tuple[str, ...]] = ("x", "y", "z", "theta")
+    margins: ClassVar[tuple[str, ...]] = ("J_q", "J_x", "fvi", "reach")
+
+    @dataclass(frozen=True)
+    class Geometry:
+        arm_length: float = length(0.35, minimum=0.0)
+        rod_length: float = length(0.8, minimum=0.0)
+        plate_offset: float = length(0.0)
+        pitch: float = field(default=0.05, metadata={"dimension": "length_per_turn"})
+        azimuths: tuple[float, ...] = field(default=(0.0, 1.0, 2.0, 3.0), metadata={"dimension": "angle"})
+        points: tuple[tuple[float, ...], ...] = length(((0.0, 1.0), (1.0, 0.0), (1.0, 1.0)))
+
+
+@pytest.fixture(autouse=True)
+def fake_mechanism(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kinematics, "MECHANISMS", {"Fake": Fake}, raising=False)
+
+
+Write = Callable[[str], Path]
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Write:
+    """Writes a text as `fake/study.toml`."""
+    folder = tmp_path / "fake"
+    folder.mkdir()
+
+    def write_study(text: str) -> Path:
+        path = folder / "study.toml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write_study
+
+
+@pytest.fixture
+def study_text() -> str:
+    return STUDY
+
+
+@pytest.fixture
+def minimal_text() -> str:
+    return MINIMAL

@@ -1,0 +1,159 @@
+"""A jerk-limited approach in joint space, from rest to rest (ruckig); the only module that imports ruckig.
+
+Berscheid and Kroeger, "Jerk-limited real-time trajectory generation with arbitrary target states", RSS 2021. One move
+from joints to joints: intermediate waypoints are never used, since this edition of ruckig sends them to a cloud.
+The pose follows from the forward model, and must exist and come back by the inverse model all along.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from ruckig import DurationDiscretization, InputParameter, Result, Ruckig, Synchronization, Trajectory
+
+from kinematics import InvalidValue, Mechanism
+from kinematics.dynamics import inverse_dynamics
+from kinematics.motion import joint_motion
+from trajectory.errors import LimitsExceeded, TimingFailed
+from trajectory.limits import Limits
+from trajectory.path import Array
+from trajectory.setpoints import Setpoints
+
+PARTS = 10  # of each period, at which the limits and the forward model are checked
+_ROUNDING = 1e-9  # of a limit: ruckig's profiles touch the limits
+_SAME_JOINTS = 1e-7  # how far the joints may be from those of their own pose
+
+
+@dataclass(frozen=True, eq=False)
+class Approach:
+    """An approach that was checked.
+
+    Attributes:
+        setpoints: one a period, from rest to rest.
+        duration: a whole number of periods [s].
+        peak_over_limit: of the joints' speed, acceleration and jerk, and of the torque where it is limited.
+    """
+
+    setpoints: Setpoints
+    duration: float
+    peak_over_limit: dict[str, float]
+
+
+def plan_approach(
+    robot: Mechanism,
+    target: Array,
+    limits: Limits,
+    payload: float,
+    period: float,
+    joint_units: tuple[str, ...],
+    start: Array | None = None,
+) -> Approach:
+    """The fastest jerk-limited move of the joints to a pose, sampled each period.
+
+    Args:
+        robot: any mechanism.
+        target: (n,) the pose to reach, such as a cycle's start.
+        limits: speed, acceleration and jerk are kept by the plan; torque is checked where given.
+        payload: mass at the tool [kg].
+        period: of the drives' bus; the duration is a whole number of periods [s].
+        joint_units: rad or m for each joint.
+        start: (n,) the pose to start from; the robot's home when None.
+
+    Raises:
+        InvalidValue: no acceleration or jerk limit, a tool limit, or an impossible period.
+        UnreachablePose: start or target.
+        TimingFailed: ruckig reports anything but success, or a pose on the way does not exist.
+        LimitsExceeded: a limit is broken on the way.
+    """
+    _require_usable(limits, period)
+    ends = np.stack([np.asarray(robot.home if start is None else start, dtype=float), np.asarray(target, dtype=float)])
+    robot.require_reachable(ends)
+    joints = robot.inverse(ends)
+    asked = {**limits.as_dict(), "period": period, "start": ends[0].tolist(), "target": ends[1].tolist()}
+    plan = _plan(joints, limits, period, asked)
+    count = round(plan.duration / period)
+    times = np.arange(count * PARTS + 1) * (period / PARTS)
+    dense = _samples(plan, np.minimum(times, plan.duration))
+    pose = _poses(robot, dense[0], times, asked)
+    torque = _torque(robot, payload, pose, dense)
+    found = _peaks(dense, torque, limits, period / PARTS)
+    over = {name: value for name, value in found.items() if not value <= 1.0 + _ROUNDING}
+    if over:
+        raise LimitsExceeded(over, 1.0)
+    table = np.concatenate([times[:, None], pose, *dense, torque], axis=1)[::PARTS]
+    header = {**asked, "mechanism": type(robot).__name__, "geometry hash": robot.geometry.digest}
+    header |= {"law": "ruckig", "payload [kg]": payload, "period [s]": period, "periods": [count]}
+    setpoints = Setpoints.of_table(table, robot.joint_names, joint_units, header)
+    return Approach(setpoints, count * period, found)
+
+
+def _require_usable(limits: Limits, period: float) -> None:
+    for name in ("tool_speed", "tool_acceleration"):
+        if getattr(limits, name) is not None:
+            raise InvalidValue(f"Limits {name} for an approach", getattr(limits, name), "None: it moves the joints")
+    if not (math.isfinite(period) and period > 0.0):
+        raise InvalidValue("period", period, "a finite time > 0 s")
+
+
+def _plan(joints: Array, limits: Limits, period: float, asked: dict[str, object]) -> Trajectory:
+    """(2, m) first and last joints -> the trajectory."""
+    count = joints.shape[1]
+    given = InputParameter(count)
+    given.current_position, given.target_position = joints[0].tolist(), joints[1].tolist()
+    given.max_velocity = _needed(limits, "speed", count)
+    given.max_acceleration = _needed(limits, "acceleration", count)
+    given.max_jerk = _needed(limits, "jerk", count)
+    given.duration_discretization = DurationDiscretization.Discrete
+    given.synchronization = Synchronization.Phase  # a straight line of the joints: apart, they would spin the tool
+    plan = Trajectory(count)
+    result = Ruckig(count, period).calculate(given, plan)
+    if result not in (Result.Working, Result.Finished):
+        raise TimingFailed("ruckig", asked, f"no solution ({Result(result).name})")
+    return plan
+
+
+def _needed(limits: Limits, name: str, count: int) -> list[float]:
+    limit = limits.of_joints(name, count)
+    if limit is None:
+        raise InvalidValue(f"Limits {name} for an approach", None, "a limit: a jerk-limited move needs it")
+    return [float(v) for v in limit]
+
+
+def _samples(plan: Trajectory, times: Array) -> tuple[Array, Array, Array]:
+    """Joints, speed and acceleration, (k, m) each; ruckig gives one time at a time."""
+    rows = np.array([plan.at_time(float(t)) for t in times])
+    return rows[:, 0], rows[:, 1], rows[:, 2]
+
+
+def _poses(robot: Mechanism, joints: Array, times: Array, asked: dict[str, object]) -> Array:
+    """(k, n) by the forward model; the working mode of every joint must come back."""
+    pose = robot.forward(joints)
+    missing = ~np.isfinite(pose).all(axis=-1)
+    if missing.any():
+        raise TimingFailed("ruckig", asked, f"no pose at t = {times[int(np.argmax(missing))]:.6g} s")
+    away = ~(np.abs(robot.inverse(pose) - joints).max(axis=-1) <= _SAME_JOINTS)
+    if away.any():
+        raise TimingFailed("ruckig", asked, f"another working mode at t = {times[int(np.argmax(away))]:.6g} s")
+    return pose
+
+
+def _torque(robot: Mechanism, payload: float, pose: Array, dense: tuple[Array, Array, Array]) -> Array:
+    """(k, m): the pose's velocity and acceleration solve q' = J v and q'' = J a + J' v."""
+    _, speed, acceleration = dense
+    jacobian, none = robot.inverse_jacobian(pose), np.zeros_like(pose)
+    velocity = np.linalg.solve(jacobian, speed[..., None])[..., 0]
+    bias = joint_motion(robot, pose, velocity, none, none).second
+    pose_acceleration = np.linalg.solve(jacobian, (acceleration - bias)[..., None])[..., 0]
+    return inverse_dynamics(robot, payload, pose, velocity, pose_acceleration)
+
+
+def _peaks(dense: tuple[Array, Array, Array], torque: Array, limits: Limits, step: float) -> dict[str, float]:
+    """Each limited quantity's peak over its limit; the jerk is the mean over each step, and so never above its peak."""
+    joints, speed, acceleration = dense
+    quantities = {"speed": speed, "acceleration": acceleration, "jerk": np.diff(acceleration, axis=0) / step}
+    if limits.torque is not None:
+        quantities["torque"] = torque
+    count = joints.shape[1]
+    return {name: float((np.abs(v) / limits.of_joints(name, count)).max()) for name, v in quantities.items()}

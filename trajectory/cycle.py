@@ -1,0 +1,113 @@
+"""A cycle: the way there and the way back, each timed from rest to rest.
+
+A path that reverses has a cusp there, which no law of one piece may cross, so each way is its own piece.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from kinematics import InvalidValue, Mechanism
+from trajectory.errors import LimitsExceeded
+from trajectory.limits import Limits
+from trajectory.path import Path, Reversed
+from trajectory.repair import Repaired, repair
+from trajectory.timing import TimeLaw
+from trajectory.verification import Verification, verify
+
+Timing = Callable[[Mechanism, Path, Limits, float], TimeLaw]
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """One way, from rest to rest, within its limits.
+
+    Attributes:
+        path: of the pose.
+        payload: mass at the tool on this way [kg].
+        timed: the law, its verification and the factor of its repair.
+    """
+
+    path: Path
+    payload: float
+    timed: Repaired
+
+
+@dataclass(frozen=True, eq=False)
+class Cycle:
+    """The pieces in order, the limits and the robot for which they are timed."""
+
+    robot: Mechanism
+    limits: Limits
+    pieces: tuple[Piece, ...]
+
+    @property
+    def duration(self) -> float:
+        """Of all pieces [s]."""
+        return sum(piece.timed.law.duration for piece in self.pieces)
+
+    def stretched_to(self, period: float) -> Cycle:
+        """Every piece stretched to a whole number of periods, so that each pose at rest is a set-point; verified again.
+
+        Args:
+            period: of the drives' bus [s].
+
+        Raises:
+            InvalidValue: the period is not finite and positive.
+            LimitsExceeded: a stretched piece fails its verification.
+        """
+        return Cycle(self.robot, self.limits, tuple(self._whole(piece, period) for piece in self.pieces))
+
+    def _whole(self, piece: Piece, period: float) -> Piece:
+        law = piece.timed.law.scaled_to(periods_of(piece.timed.law.duration, period) * period)
+        found = _within(verify(self.robot, piece.path, law, self.limits, piece.payload))
+        factor = law.duration / piece.timed.law.duration
+        return Piece(piece.path, piece.payload, Repaired(law, factor, piece.timed.verification, found))
+
+
+def there_and_back(
+    robot: Mechanism,
+    path: Path,
+    limits: Limits,
+    payload: float,
+    timing: Timing,
+    payload_back: float | None = None,
+) -> Cycle:
+    """Time a path and its reverse; each is verified, and repaired by at most 1 %.
+
+    Args:
+        robot: any mechanism whose pose is [x, y, z, theta].
+        path: the way there.
+        limits: of joints and tool.
+        payload: mass at the tool on the way there [kg].
+        timing: the method, such as `time_optimal`.
+        payload_back: mass on the way back [kg]; as on the way there when None.
+
+    Raises:
+        LimitsExceeded: a law breaks its limits by more than may be repaired; and what `timing` raises.
+    """
+    loads = (payload, payload if payload_back is None else payload_back)
+    pieces = []
+    for way, load in zip((path, Reversed(path)), loads, strict=True):
+        timed = repair(robot, way, timing(robot, way, limits, load), limits, load)
+        pieces.append(Piece(way, load, timed))
+    return Cycle(robot, limits, tuple(pieces))
+
+
+def periods_of(duration: float, period: float) -> int:
+    """The least whole number of periods that is no shorter, but for rounding.
+
+    Raises:
+        InvalidValue: the period is not finite and positive.
+    """
+    if not (math.isfinite(period) and period > 0.0):
+        raise InvalidValue("period", period, "a finite time > 0 s")
+    return max(1, math.ceil(duration / period * (1 - 1e-12)))
+
+
+def _within(found: Verification) -> Verification:
+    if not found.ok:
+        raise LimitsExceeded(found.failures, 1.0)
+    return found

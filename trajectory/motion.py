@@ -1,0 +1,54 @@
+"""The motion of the pose, the joints and the drives that follows from a path and a time law."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from kinematics import Mechanism
+from kinematics.dynamics import inverse_dynamics
+from kinematics.motion import JointMotion, joint_motion
+from trajectory.path import Array, Path
+from trajectory.timing import PathMotion
+
+
+class PoseMotion(NamedTuple):
+    """The pose and its time derivatives, each (..., 4)."""
+
+    pose: Array
+    velocity: Array
+    acceleration: Array
+    jerk: Array
+
+
+class Motion(NamedTuple):
+    """All that moves: pose, joints and their time derivatives, and torque (..., m)."""
+
+    tool: PoseMotion
+    joints: JointMotion
+    torque: Array
+
+
+def pose_motion(path: Path, along: PathMotion) -> PoseMotion:
+    """The pose in time, by the chain rule on p(s(t)).
+
+    Args:
+        path: of the pose.
+        along: (...,) arc length and its time derivatives.
+    """
+    pose, first, second, third = path.evaluate(along.position, 3)
+    v, a, j = (x[..., None] for x in (along.speed, along.acceleration, along.jerk))
+    return PoseMotion(pose, first * v, second * v**2 + first * a, third * v**3 + 3 * second * v * a + first * j)
+
+
+def motion_along(robot: Mechanism, path: Path, along: PathMotion, payload: float) -> Motion:
+    """Pose, joints and torque in time; NaN where a limb cannot reach.
+
+    Args:
+        robot: any mechanism with the path's kind of pose.
+        path: of the pose.
+        along: (...,) arc length and its time derivatives.
+        payload: mass at the tool [kg].
+    """
+    tool = pose_motion(path, along)
+    torque = inverse_dynamics(robot, payload, tool.pose, tool.velocity, tool.acceleration)
+    return Motion(tool, joint_motion(robot, *tool), torque)

@@ -1,0 +1,117 @@
+"""Set-points as CSV: commented header lines of `name: JSON value`, the columns' names, then one row a period.
+
+Numbers are written with as many digits as bring them back exactly. A file appears whole or not at all: it is written
+beside its final place and then moved there.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path as FilePath
+from typing import Any
+
+import numpy as np
+
+from kinematics import InvalidValue
+from trajectory.errors import SetpointFileError
+from trajectory.files import write_files
+from trajectory.path import POSE_NAMES, Array
+from trajectory.setpoints import Setpoints
+
+FORMAT = "linkwright set-points 1"
+_NEEDED = ("period [s]", "periods", "joints", "units")
+_ROUNDING = 1e-9  # of the period
+
+
+def write_setpoints(file: FilePath | str, setpoints: Setpoints) -> None:
+    """Write the CSV file, atomically: on failure, a file that was there stays as it was.
+
+    Raises:
+        InvalidValue: a set-point is not finite.
+        CannotWrite: the folder cannot be written to.
+    """
+    file = FilePath(file)
+    write_files(file.parent, {file.name: setpoints_text(setpoints)})
+
+
+def setpoints_text(setpoints: Setpoints) -> str:
+    """The CSV file's content.
+
+    Raises:
+        InvalidValue: a set-point is not finite.
+    """
+    table = setpoints.table()
+    if not np.isfinite(table).all():
+        row, column = (int(k) for k in np.argwhere(~np.isfinite(table))[0])
+        raise InvalidValue(f"set-point {row}, {setpoints.columns[column]}", table[row, column], "a finite number")
+    header = {**setpoints.header, "joints": list(setpoints.joint_names), "units": list(setpoints.units)}
+    lines = [f"# {FORMAT}", *(f"# {name}: {json.dumps(value)}" for name, value in header.items())]
+    lines.append(",".join(setpoints.columns))
+    lines.extend(",".join(map(repr, row)) for row in table.tolist())
+    return "\n".join(lines) + "\n"
+
+
+def read_setpoints(file: FilePath | str) -> Setpoints:
+    """Read what `write_setpoints` wrote; strict.
+
+    Raises:
+        SetpointFileError: naming the line, what was found and what was expected.
+    """
+    file = FilePath(file)
+    lines = file.read_text(encoding="utf-8").splitlines()
+    first = lines[0] if lines else "an empty file"
+    if first != f"# {FORMAT}":
+        raise SetpointFileError(file, 1, first, f"# {FORMAT}")
+    header = _read_header(file, lines)
+    names, units = header.pop("joints"), header.pop("units")
+    above = len(header) + 3  # the format's line, joints and units
+    joint_units = units[1 + len(POSE_NAMES) :][: len(names)]
+    columns = Setpoints.of_table(np.zeros((0, 5 + 4 * len(names))), names, joint_units, header).columns
+    if len(lines) <= above or lines[above] != ",".join(columns):
+        raise SetpointFileError(
+            file, above + 1, "other columns" if len(lines) > above else "the end", ",".join(columns)
+        )
+    table = np.array([_read_row(file, above + 2 + k, line, len(columns)) for k, line in enumerate(lines[above + 1 :])])
+    _require_periods(file, above + 2, table, header)
+    return Setpoints.of_table(table, names, joint_units, header)
+
+
+def _read_header(file: FilePath, lines: list[str]) -> dict[str, Any]:
+    header: dict[str, Any] = {}
+    for number, line in enumerate(lines[1:], start=2):
+        if not line.startswith("#"):
+            break
+        name, separator, value = line.removeprefix("# ").partition(": ")
+        if not separator or name in header:
+            raise SetpointFileError(file, number, line, "a new '# name: value'")
+        try:
+            header[name] = json.loads(value)
+        except json.JSONDecodeError as error:
+            raise SetpointFileError(file, number, value, f"a JSON value ({error.msg})") from error
+    missing = [name for name in _NEEDED if name not in header]
+    if missing:
+        raise SetpointFileError(file, 1, f"a header without {', '.join(missing)}", "all of the writer's lines")
+    return header
+
+
+def _read_row(file: FilePath, number: int, line: str, count: int) -> list[float]:
+    cells = line.split(",")
+    if len(cells) != count:
+        raise SetpointFileError(file, number, f"{len(cells)} cells", f"{count} cells")
+    try:
+        row = [float(cell) for cell in cells]
+    except ValueError as error:
+        raise SetpointFileError(file, number, str(error), "numbers") from error
+    if not np.isfinite(row).all():
+        raise SetpointFileError(file, number, "a number that is not finite", "finite numbers")
+    return row
+
+
+def _require_periods(file: FilePath, first: int, table: Array, header: dict[str, Any]) -> None:
+    period, expected = header["period [s]"], sum(header["periods"]) + 1
+    if len(table) != expected:
+        raise SetpointFileError(file, first + len(table), f"{len(table)} rows", f"{expected} rows")
+    off = np.abs(table[:, 0] - np.arange(expected) * period) > _ROUNDING * period
+    if off.any():
+        row = int(np.argmax(off))
+        raise SetpointFileError(file, first + row, f"t = {table[row, 0]!r}", f"{row} periods of {period} s")

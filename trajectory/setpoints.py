@@ -1,0 +1,161 @@
+"""Set-points of a cycle: what the drives are told each period."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from kinematics import InvalidShape, InvalidValue, Mechanism
+from trajectory.cycle import Cycle, Piece, periods_of
+from trajectory.motion import Motion, motion_along
+from trajectory.path import POSE_NAMES, Array
+
+ASSUMPTIONS = (
+    "the default inertia and the reference limits are an assumed drive set, not a manufacturer's datasheet",
+    "rigid bodies without friction; the mass of each rod is split between its two ends",
+    "q'' and the torque are right-hand limits where s'' jumps",
+)
+_CONSISTENT = 1e-9  # of the loop closure [m^2]
+
+
+@dataclass(frozen=True, eq=False)
+class Setpoints:
+    """One row a period, the last one closes the cycle; SI units.
+
+    Attributes:
+        time: (k,) [s].
+        pose: (k, 4) x, y, z, theta.
+        joints, speed, acceleration: (k, m) the joints and their time derivatives.
+        torque: (k, m) of the drives.
+        joint_names: (m,).
+        joint_units: (m,) rad or m.
+        header: plain data on what the set-points are for, by name.
+    """
+
+    time: Array
+    pose: Array
+    joints: Array
+    speed: Array
+    acceleration: Array
+    torque: Array
+    joint_names: tuple[str, ...]
+    joint_units: tuple[str, ...]
+    header: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        rows = self.time.shape[0]
+        groups = dict.fromkeys(("joints", "speed", "acceleration", "torque"), self.joint_names)
+        for name, columns in {"pose": POSE_NAMES, **groups}.items():
+            if getattr(self, name).shape != (rows, len(columns)):
+                raise InvalidShape(f"Setpoints {name}", columns, getattr(self, name).shape)
+        if len(self.joint_units) != len(self.joint_names) or not set(self.joint_units) <= {"rad", "m"}:
+            raise InvalidValue("Setpoints joint_units", self.joint_units, "rad or m, one a joint")
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the columns of `table`."""
+        groups = ("", "_speed", "_acceleration", "_torque")
+        return ("t", *POSE_NAMES, *(f"{name}{group}" for group in groups for name in self.joint_names))
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """Units of the columns of `table`."""
+        effort = ["N m" if unit == "rad" else "N" for unit in self.joint_units]
+        rates = (f"{unit}{per}" for per in ("", "/s", "/s^2") for unit in self.joint_units)
+        return ("s", "m", "m", "m", "rad", *rates, *effort)
+
+    def table(self) -> Array:
+        """(k, 5 + 4 m) all columns side by side."""
+        parts = (self.time[:, None], self.pose, self.joints, self.speed, self.acceleration, self.torque)
+        return np.concatenate(parts, axis=1)
+
+    @classmethod
+    def of_table(
+        cls, table: Array, joint_names: Sequence[str], joint_units: Sequence[str], header: Mapping[str, Any]
+    ) -> Setpoints:
+        """From the columns side by side (k, 5 + 4 m)."""
+        m = len(joint_names)
+        edges = [1, 5, 5 + m, 5 + 2 * m, 5 + 3 * m]
+        time, pose, joints, speed, acceleration, torque = np.split(table, edges, axis=1)
+        return cls(
+            time[:, 0], pose, joints, speed, acceleration, torque, tuple(joint_names), tuple(joint_units), dict(header)
+        )
+
+    def require_consistent(self, robot: Mechanism) -> None:
+        """Check that these set-points are for this robot: its geometry, and joints that belong to the poses.
+
+        Raises:
+            InvalidValue: another mechanism or geometry, or a loop closure that is not zero; row and limb are named.
+        """
+        found = (self.header.get("mechanism"), self.header.get("geometry hash"))
+        expected = (type(robot).__name__, robot.geometry.digest)
+        if found != expected:
+            raise InvalidValue("mechanism and geometry of the set-points", found, str(expected))
+        residual = np.abs(robot.closure_residual(self.pose, self.joints))
+        if not residual.max() <= _CONSISTENT:
+            row, limb = (int(k) for k in np.unravel_index(int(residual.argmax()), residual.shape))
+            what = f"loop closure of set-point {row}, limb {limb + 1} [m^2]"
+            raise InvalidValue(what, float(residual[row, limb]), f"at most {_CONSISTENT}: joints that fit the pose")
+
+
+def cycle_setpoints(cycle: Cycle, period: float, joint_units: Sequence[str]) -> Setpoints:
+    """Stretch a cycle to whole periods, verify it again and sample it.
+
+    Each piece gets a whole number of periods of its own, so that pick and place are set-points at rest.
+
+    Args:
+        cycle: timed and verified.
+        period: of the drives' bus [s].
+        joint_units: rad or m for each joint.
+
+    Raises:
+        InvalidValue: the period or the units are impossible.
+        LimitsExceeded: the stretched cycle fails its verification.
+    """
+    whole = cycle.stretched_to(period)
+    counts = [periods_of(piece.timed.law.duration, period) for piece in whole.pieces]
+    parts = []
+    for piece, count in zip(whole.pieces, counts, strict=True):
+        motion = _sampled(whole, piece, count, last=piece is whole.pieces[-1])
+        parts.append(np.concatenate([motion.tool.pose, *motion.joints[:3], motion.torque], axis=1))
+    time = np.arange(sum(counts) + 1) * period
+    table = np.concatenate([time[:, None], np.concatenate(parts)], axis=1)
+    return Setpoints.of_table(table, cycle.robot.joint_names, joint_units, _header(cycle, whole, period, counts))
+
+
+def _sampled(cycle: Cycle, piece: Piece, count: int, last: bool) -> Motion:
+    """Motion of a piece at its periods; its end is the next piece's start unless it is the last one."""
+    times = np.linspace(0.0, piece.timed.law.duration, count + 1)[: count + 1 if last else count]
+    return motion_along(cycle.robot, piece.path, piece.timed.law.at(times), piece.payload)
+
+
+def _header(before: Cycle, after: Cycle, period: float, counts: Sequence[int]) -> dict[str, Any]:
+    """Plain data; lists, not tuples, so that it reads back equal."""
+    robot = before.robot
+    header: dict[str, Any] = {
+        "units of this header": "SI and radians unless a name says so",
+        "mechanism": type(robot).__name__,
+        "geometry hash": robot.geometry.digest,
+        "inertia": str(robot.inertia),
+        "laws": [piece.timed.law.name for piece in before.pieces],
+        "period [s]": period,
+        "periods": list(counts),
+        "cycle time before stretching [s]": before.duration,
+        "cycle time after stretching [s]": after.duration,
+        "payloads [kg]": [piece.payload for piece in before.pieces],
+    }
+    header |= {f"limit {name}": _plain(value) for name, value in before.limits.as_dict().items()}
+    header |= {f"path {name}": _plain(value) for name, value in before.pieces[0].path.as_dict().items()}
+    for k, piece in enumerate(after.pieces):
+        found = piece.timed.verification
+        header[f"peak over limit, piece {k + 1}"] = dict(found.peak_over_limit)
+        header[f"rms torque, piece {k + 1}"] = found.rms_torque.tolist()
+    header["assumptions"] = list(ASSUMPTIONS)
+    return header
+
+
+def _plain(value: object) -> object:
+    return list(value) if isinstance(value, tuple) else value

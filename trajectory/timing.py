@@ -1,0 +1,159 @@
+"""A time law: how a path is travelled in time, exactly, whatever method found it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from kinematics import InvalidShape, InvalidValue
+from trajectory.path import Array
+
+_ROUNDING = 1e-9  # of the duration or the length
+
+
+class PathMotion(NamedTuple):
+    """Arc length and its time derivatives, each of one shape [m, m/s, m/s^2, m/s^3]."""
+
+    position: Array
+    speed: Array
+    acceleration: Array
+    jerk: Array
+
+
+@dataclass(frozen=True, eq=False)
+class TimeLaw:
+    """Arc length as a piecewise cubic of time; the third derivative is zero where s'' is piecewise constant.
+
+    Attributes:
+        name: of the method that found it.
+        times: (n + 1,) knots, the first at 0 [s].
+        position: (n + 1,) s at the knots [m].
+        speed: (n + 1,) s' at the knots, never negative [m/s].
+        acceleration: (n,) s'' where each interval starts [m/s^2].
+        jerk: (n,) s''' of each interval [m/s^3].
+
+    Raises:
+        InvalidShape, InvalidValue: arrays that do not fit together, are not finite or do not join at the knots.
+    """
+
+    name: str
+    times: Array
+    position: Array
+    speed: Array
+    acceleration: Array
+    jerk: Array
+
+    def __post_init__(self) -> None:
+        for field in ("times", "position", "speed", "acceleration", "jerk"):
+            array = np.array(getattr(self, field), dtype=float)
+            expected = np.shape(self.times)[0] - (field in ("acceleration", "jerk"))
+            if array.shape != (expected,):
+                raise InvalidShape(f"TimeLaw {field}", [str(k) for k in range(expected)], array.shape)
+            if not np.isfinite(array).all():
+                raise InvalidValue(f"TimeLaw {field}", "a number that is not finite", "finite numbers")
+            array.setflags(write=False)
+            object.__setattr__(self, field, array)
+        if self.times.size < 2 or self.times[0] != 0.0 or not (np.diff(self.times) > 0).all():
+            raise InvalidValue("TimeLaw times", "knots that do not increase from 0", "increasing from 0 s")
+        if (self.speed < 0).any():
+            raise InvalidValue("TimeLaw speed", float(self.speed.min()), "at least 0 m/s: a path is not travelled back")
+        self._require_joined()
+
+    @classmethod
+    def constant_acceleration(cls, name: str, position: Array, speed: Array) -> TimeLaw:
+        """The law whose s'' is constant between gridpoints, so that s'^2 is linear in s.
+
+        Args:
+            name: of the method.
+            position: (n + 1,) increasing arc lengths [m].
+            speed: (n + 1,) path speed there, zero at most at one end of an interval [m/s].
+
+        Raises:
+            InvalidValue: an interval that is never left.
+        """
+        position, speed = np.asarray(position, dtype=float), np.asarray(speed, dtype=float)
+        steps, sums = np.diff(position), speed[1:] + speed[:-1]
+        if not (steps > 0).all():
+            raise InvalidValue("TimeLaw position", "gridpoints that do not increase", "increasing arc lengths")
+        if not (sums > 0).all():
+            at = float(position[int(np.argmin(sums))])
+            raise InvalidValue("TimeLaw speed", f"rest all through the interval at s = {at:.6g} m", "a speed > 0 m/s")
+        times = np.concatenate([[0.0], np.cumsum(2 * steps / sums)])
+        return cls(name, times, position, speed, np.diff(speed) * sums / (2 * steps), np.zeros_like(steps))
+
+    @property
+    def duration(self) -> float:
+        """T [s]."""
+        return float(self.times[-1])
+
+    def at(self, t: Array) -> PathMotion:
+        """Exact motion at times (...,) in [0, T]; the right-hand limit at a knot, the left-hand one at T.
+
+        Raises:
+            InvalidValue: a time outside the law by more than rounding, or not a number.
+        """
+        t = np.asarray(t, dtype=float)
+        outside = ~((t >= -_ROUNDING * self.duration) & (t <= self.duration * (1 + _ROUNDING)))
+        if outside.any():
+            raise InvalidValue("time", float(t[outside].flat[0]), f"a number in [0, {self.duration:.9g}] s")
+        interval = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, self.times.size - 2)
+        return self._in_interval(interval, np.clip(t, 0.0, self.duration) - self.times[interval])
+
+    def within(self, fractions: Array) -> tuple[Array, PathMotion]:
+        """Every interval at fractions (k,) of its own time, so that 0 and 1 give its one-sided limits.
+
+        Returns:
+            Times (n, k) [s] and the motion there, (n, k) each.
+        """
+        since = np.diff(self.times)[:, None] * np.asarray(fractions, dtype=float)
+        interval = np.broadcast_to(np.arange(self.times.size - 1)[:, None], since.shape)
+        return self.times[:-1, None] + since, self._in_interval(interval, since)
+
+    def stretched(self, factor: float) -> TimeLaw:
+        """The same path travelled `factor` times as long.
+
+        Raises:
+            InvalidValue: the factor is not finite and positive.
+        """
+        if not (np.isfinite(factor) and factor > 0):
+            raise InvalidValue("factor of a stretched law", factor, "finite and > 0")
+        return replace(
+            self,
+            times=self.times * factor,
+            speed=self.speed / factor,
+            acceleration=self.acceleration / factor**2,
+            jerk=self.jerk / factor**3,
+        )
+
+    def scaled_to(self, duration: float) -> TimeLaw:
+        """The same path travelled in the given time [s]."""
+        return self.stretched(duration / self.duration)
+
+    def acceleration_jump(self) -> tuple[float, float]:
+        """Time [s] and size [m/s^2] of the largest jump of s'' at a knot, those from and to rest at the ends included.
+
+        A jump is an impulse of the jerk, so jerk means something only where there is none.
+        """
+        ends = self.acceleration + self.jerk * np.diff(self.times)
+        jumps = np.abs(np.append(self.acceleration, 0.0) - np.concatenate([[0.0], ends]))
+        return float(self.times[jumps.argmax()]), float(jumps.max())
+
+    def _in_interval(self, interval: Array, since: Array) -> PathMotion:
+        s, v, a, j = (x[interval] for x in (self.position, self.speed, self.acceleration, self.jerk))
+        position = s + since * (v + since * (a / 2 + since * j / 6))
+        speed, acceleration = v + since * (a + since * j / 2), a + since * j
+        return PathMotion(np.clip(position, self.position[0], self.position[-1]), speed, acceleration, j)
+
+    def _require_joined(self) -> None:
+        """Each interval must end where the next one starts."""
+        _, ends = self.within(np.array([1.0]))
+        gaps = (
+            ("position", np.abs(ends.position[:, 0] - self.position[1:]), np.ptp(self.position)),
+            ("speed", np.abs(ends.speed[:, 0] - self.speed[1:]), self.speed.max()),
+        )
+        for field, gap, scale in gaps:
+            if not (gap <= _ROUNDING * scale).all():
+                k = int(np.argmax(gap))
+                raise InvalidValue(f"TimeLaw {field}", f"a gap of {gap[k]:.3g} at knot {k + 1}", "intervals that join")

@@ -1,0 +1,155 @@
+"""The time-optimal law on a fixed path by reachability analysis (toppra); the only module that imports toppra.
+
+Pham and Pham, "A new approach to time-optimal path parameterization based on reachability analysis", IEEE T-RO 2018.
+Along a path, with u = s'' and x = s'^2, every limit that is kept here is linear in (u, x):
+
+    joint acceleration   q' u + q'' x
+    torque               (tau(p, 0, p') - c) u + (tau(p, p', p'') - c) x + c,  c = tau(p, 0, 0)
+    tool acceleration    p' u + p'' x, in the plane of the path's tangent and normal
+    joint speed          |q'| sqrt(x),  tool speed  |p'| sqrt(x)
+
+with a dash for the derivative by the path parameter. The coefficients are exact at the gridpoints, where the limits are
+kept on both sides (toppra's interpolation scheme); in between they are kept to the order of the grid, which
+`verify` measures. The law has bang-bang s'': it keeps no jerk limit and refuses one.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from toppra import SimplePath
+from toppra.algorithm import TOPPRA
+from toppra.constraint import DiscretizationType, LinearConstraint
+from toppra.constraint.linear_constraint import canlinear_colloc_to_interpolate
+from toppra.interpolator import AbstractGeometricPath
+
+from kinematics import InvalidValue, Mechanism
+from kinematics.dynamics import inverse_dynamics
+from kinematics.motion import joint_motion
+from trajectory.errors import TimingFailed
+from trajectory.limits import Limits
+from trajectory.path import Array, Path, require_schoenflies, require_smooth
+from trajectory.timing import TimeLaw
+
+LEAST_INTERVALS = 1000
+_FACETS = 32  # of the half disc inside the tool acceleration's; the cap is kept and at most 0.12 % is given away
+Coefficients = tuple[Array, Array, Array]  # a, b, c, each (N + 1, rows): |a u + b x + c| <= 1
+Parameters = tuple[Array | None, ...]
+
+
+def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = 2000) -> TimeLaw:
+    """The fastest law from rest to rest on the path.
+
+    Args:
+        robot: any mechanism whose pose is [x, y, z, theta].
+        path: smooth, without a cusp.
+        limits: of joints and tool; without jerk.
+        payload: mass at the tool [kg].
+        intervals: N, of equal arc length, at least 1000.
+
+    Raises:
+        InvalidValue: a jerk limit, too few intervals, a negative payload, or another kind of pose.
+        RoughPath: the path has a cusp or a kink.
+        UnreachablePose: a limb cannot reach a pose of the path; the limb and its margin are named.
+        TimingFailed: there is no law within the limits, as where the weight alone is beyond the torque.
+    """
+    require_schoenflies(robot)
+    if limits.jerk is not None:
+        raise InvalidValue("Limits jerk for the toppra law", limits.jerk, "None: its s'' is bang-bang")
+    if intervals < LEAST_INTERVALS:
+        raise InvalidValue("intervals of the toppra law", intervals, f"at least {LEAST_INTERVALS}")
+    if not (math.isfinite(payload) and payload >= 0.0):
+        raise InvalidValue("payload", payload, "a finite mass >= 0 kg")
+    grid = np.linspace(0.0, 1.0, intervals + 1)
+    require_smooth(path, path.length * grid)
+    derivatives = [d * path.length**k for k, d in enumerate(path.evaluate(path.length * grid, 2))]
+    robot.require_reachable(derivatives[0])
+    bound, rows = _path_limits(robot, derivatives, limits, payload)
+    asked = {**limits.as_dict(), "payload": payload, "intervals": intervals, "path": path.as_dict()}
+    speed = _solve(grid, bound, rows, asked)
+    return TimeLaw.constant_acceleration("toppra", path.length * grid, path.length * speed)
+
+
+def _path_limits(
+    robot: Mechanism, derivatives: list[Array], limits: Limits, payload: float
+) -> tuple[Array, list[Coefficients]]:
+    """Largest x (N + 1,), and the rows that bound u and x, over their limits."""
+    pose, first, second = derivatives
+    count = len(robot.joint_names)
+    none = np.zeros_like(pose)
+    joints = joint_motion(robot, pose, first, second, none)
+    speed = limits.of_joints("speed", count)
+    with np.errstate(divide="ignore"):  # joints at rest bound nothing; `_solve` refuses what is not finite
+        highest = (np.abs(joints.first) / speed).max(axis=-1) ** -2.0
+    tangent = np.linalg.norm(first[:, :3], axis=-1)
+    if limits.tool_speed is not None:
+        highest = np.minimum(highest, (limits.tool_speed / tangent) ** 2)
+    rows: list[Coefficients] = []
+    acceleration, torque = limits.of_joints("acceleration", count), limits.of_joints("torque", count)
+    if acceleration is not None:
+        rows.append((joints.first / acceleration, joints.second / acceleration, none[:, :1] + np.zeros(count)))
+    if torque is not None:
+        weight = inverse_dynamics(robot, payload, pose, none, none)
+        by_u = inverse_dynamics(robot, payload, pose, none, first) - weight
+        by_x = inverse_dynamics(robot, payload, pose, first, second) - weight
+        rows.append((by_u / torque, by_x / torque, weight / torque))
+    if limits.tool_acceleration is not None:
+        rows.append(_tool_rows(first[:, :3], second[:, :3], limits.tool_acceleration))
+    return highest, rows
+
+
+def _tool_rows(first: Array, second: Array, cap: float) -> Coefficients:
+    """The facets of a polygon inside the disc of the tool's acceleration; the normal part is never negative."""
+    length = np.linalg.norm(first, axis=-1, keepdims=True)
+    along = (second * first).sum(axis=-1, keepdims=True) / length
+    normal = np.linalg.norm(second - along * first / length, axis=-1, keepdims=True)
+    angles = np.linspace(0.0, math.pi, _FACETS, endpoint=False)
+    inside = cap * math.cos(math.pi / (2 * _FACETS))
+    a = length * np.cos(angles) / inside
+    b = (along * np.cos(angles) + normal * np.sin(angles)) / inside
+    return a, b, np.zeros_like(a)
+
+
+class SpeedBound(LinearConstraint):
+    """0 <= x <= bound (N + 1,)."""
+
+    def __init__(self, bound: Array) -> None:
+        super().__init__()
+        self.bound = bound
+        self.set_discretization_type(DiscretizationType.Interpolation)
+
+    def compute_constraint_params(self, path: AbstractGeometricPath, gridpoints: Array) -> Parameters:  # noqa: ARG002
+        """toppra's (a, b, c, F, g, ubound, xbound)."""
+        return None, None, None, None, None, None, np.stack([np.zeros_like(self.bound), self.bound], axis=-1)
+
+
+class SymmetricRows(LinearConstraint):
+    """|a u + b x + c| <= 1 at both ends of each interval."""
+
+    def __init__(self, coefficients: Coefficients) -> None:
+        super().__init__()
+        self.identical = True
+        self.coefficients = coefficients
+        self.set_discretization_type(DiscretizationType.Interpolation)
+
+    def compute_constraint_params(self, path: AbstractGeometricPath, gridpoints: Array) -> Parameters:  # noqa: ARG002
+        """toppra's (a, b, c, F, g, ubound, xbound)."""
+        eye = np.eye(self.coefficients[0].shape[1])
+        sides = np.concatenate([eye, -eye])
+        ones = np.ones(sides.shape[0])
+        return canlinear_colloc_to_interpolate(*self.coefficients, sides, ones, None, None, gridpoints, identical=True)
+
+
+def _solve(grid: Array, bound: Array, rows: list[Coefficients], asked: dict[str, object]) -> Array:
+    """(N + 1,) speed of the normalised parameter [1/s]."""
+    if not (np.isfinite(bound).all() and all(np.isfinite(c).all() for row in rows for c in row)):
+        raise TimingFailed("toppra", asked, "the path's coefficients are not finite: a singular pose on it")
+    # toppra asks for a path, but all that its algorithm reads from it is the interval [0, 1].
+    unit = SimplePath(np.array([0.0, 1.0]), np.array([[0.0], [1.0]]))
+    constraints = [SpeedBound(bound), *(SymmetricRows(r) for r in rows)]
+    problem = TOPPRA(constraints, unit, gridpoints=grid, solver_wrapper="seidel")
+    _, speed, _ = problem.compute_parameterization(0.0, 0.0)
+    if speed is None or not np.isfinite(speed).all():
+        raise TimingFailed("toppra", asked, f"no solution ({problem.problem_data.return_code.name})")
+    return np.asarray(speed)

@@ -1,0 +1,201 @@
+"""Independent verification of a timed path: densely in time, between the gridpoints and on both sides of each knot.
+
+Nothing here uses the coefficients from which a law was made: the pose and its time derivatives come from the path and
+the law, the joints from the inverse model's derivatives, the torque from inverse dynamics. Peaks are sampled, at ten
+equal parts of each interval; they are measured, not proven.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from kinematics import InvalidValue, Mechanism
+from trajectory.limits import Limits
+from trajectory.motion import Motion, motion_along
+from trajectory.path import Array, Path, require_schoenflies
+from trajectory.timing import TimeLaw
+
+PARTS = 10  # of each interval of the law
+FRACTIONS = np.linspace(0.0, 1.0, PARTS + 1)
+_SIMPSON = np.array([1, 4, 2, 4, 2, 4, 2, 4, 2, 4, 1]) / (3 * PARTS)
+_SMOOTH = 1e-9  # of the largest s'': a smaller jump is rounding
+_TOLERANCES = {  # SI; the closure is in m^2
+    "start pose": 1e-9,
+    "end pose": 1e-9,
+    "start speed": 1e-9,
+    "end speed": 1e-9,
+    "closure": 1e-9,
+    "forward": 1e-6,
+}
+
+
+class Peak(NamedTuple):
+    """The largest magnitude of one quantity, and where it is; SI units.
+
+    `joint` is None for the tool; `limit` and `ratio` are None where nothing limits the quantity. Where each joint has
+    a limit of its own, it is the peak of their ratios.
+    """
+
+    quantity: str
+    joint: str | None
+    time: float
+    value: float
+    limit: float | None
+    ratio: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Verification:
+    """What was measured.
+
+    Attributes:
+        law: name of the law.
+        duration: of the motion [s].
+        peaks: of joint speed, joint acceleration, torque, joint jerk, tool speed, tool acceleration.
+        residuals: of end poses, end speeds, loop closure and forward model, SI.
+        reach: the worst limb's margin [m]; negative or NaN fails.
+        rms_torque: (m,) over the whole duration [N m or N].
+        rms_over_peak: (m,) each joint's RMS torque over its own peak.
+        notes: what was left out, and why.
+    """
+
+    law: str
+    duration: float
+    peaks: tuple[Peak, ...]
+    residuals: dict[str, float]
+    reach: float
+    rms_torque: Array
+    rms_over_peak: Array
+    notes: tuple[str, ...]
+
+    @property
+    def peak_over_limit(self) -> dict[str, float]:
+        """Each limited quantity's peak over its limit."""
+        return {p.quantity: p.ratio for p in self.peaks if p.ratio is not None}
+
+    @property
+    def failures(self) -> dict[str, float]:
+        """What fails: peaks and residuals over their limits, and a reach margin [m]; NaN always fails."""
+        failed = {name: ratio for name, ratio in self.peak_over_limit.items() if not ratio <= 1.0}
+        failed |= {p.quantity: math.nan for p in self.peaks if math.isnan(p.value)}
+        over = {name: value / _TOLERANCES[name] for name, value in self.residuals.items()}
+        failed |= {name: ratio for name, ratio in over.items() if not ratio <= 1.0}
+        if not self.reach >= 0.0:
+            failed["reach margin [m]"] = self.reach
+        return failed
+
+    @property
+    def ok(self) -> bool:
+        """Whether everything holds."""
+        return not self.failures
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """A table: quantity, peak, limit, peak over limit, joint, time [s]."""
+
+        def number(value: float | None) -> str:
+            return "" if value is None else f"{value:.6g}"
+
+        return [
+            (p.quantity, number(p.value), number(p.limit), number(p.ratio), p.joint or "", number(p.time))
+            for p in self.peaks
+        ]
+
+
+def verify(robot: Mechanism, path: Path, law: TimeLaw, limits: Limits, payload: float) -> Verification:
+    """Measure a timed path against its limits.
+
+    Args:
+        robot: any mechanism whose pose is [x, y, z, theta].
+        path: of the pose.
+        law: how it is travelled; from rest to rest over the whole path.
+        limits: of joints and tool. Where s'' jumps, a jerk limit fails with an infinite peak.
+        payload: mass at the tool [kg].
+
+    Raises:
+        InvalidValue: the law's arc length is not the path's, or another kind of pose.
+    """
+    require_schoenflies(robot)
+    ends = (law.position[0], law.position[-1])
+    if not np.allclose(ends, (0.0, path.length), rtol=0.0, atol=1e-9 * path.length):
+        raise InvalidValue("arc length of the time law", ends, f"(0, {path.length:.9g}) m, the path's")
+    times, along = law.within(FRACTIONS)
+    motion = motion_along(robot, path, along, payload)
+    peaks, notes = _peaks(robot, law, times, motion, limits)
+    mean_square = (motion.torque**2 * _SIMPSON[:, None]).sum(axis=1)
+    rms = np.sqrt((mean_square * np.diff(law.times)[:, None]).sum(axis=0) / law.duration)
+    return Verification(
+        law=law.name,
+        duration=law.duration,
+        peaks=peaks,
+        residuals=_residuals(robot, path, motion),
+        reach=_least(robot.margin("reach", motion.tool.pose)),
+        rms_torque=rms,
+        rms_over_peak=rms / np.abs(motion.torque).max(axis=(0, 1)),
+        notes=notes,
+    )
+
+
+def _peaks(
+    robot: Mechanism, law: TimeLaw, times: Array, motion: Motion, limits: Limits
+) -> tuple[tuple[Peak, ...], tuple[str, ...]]:
+    names = robot.joint_names
+
+    def of_joints(quantity: str, values: Array, field: str) -> Peak:
+        limit = limits.of_joints(field, len(names))
+        scaled = np.abs(values) / (1.0 if limit is None else limit)
+        row, part, joint = (int(k) for k in np.unravel_index(int(scaled.argmax()), scaled.shape))
+        value = abs(float(values[row, part, joint]))
+        bound, ratio = (None, None) if limit is None else (float(limit[joint]), float(scaled[row, part, joint]))
+        return Peak(quantity, names[joint], float(times[row, part]), value, bound, ratio)
+
+    def of_tool(quantity: str, values: Array, limit: float | None) -> Peak:
+        size = np.linalg.norm(values[..., :3], axis=-1)
+        where = np.unravel_index(int(size.argmax()), size.shape)
+        ratio = None if limit is None else float(size[where]) / limit
+        return Peak(quantity, None, float(times[where]), float(size[where]), limit, ratio)
+
+    peaks = [
+        of_joints("joint speed", motion.joints.first, "speed"),
+        of_joints("joint acceleration", motion.joints.second, "acceleration"),
+        of_joints("torque", motion.torque, "torque"),
+        of_tool("tool speed", motion.tool.velocity, limits.tool_speed),
+        of_tool("tool acceleration", motion.tool.acceleration, limits.tool_acceleration),
+    ]
+    jump_time, jump = law.acceleration_jump()
+    if jump <= _SMOOTH * np.abs(law.acceleration).max():
+        peaks.append(of_joints("joint jerk", motion.joints.third, "jerk"))
+        return tuple(peaks), ()
+    if limits.jerk is not None:
+        peaks.append(Peak("joint jerk", None, jump_time, math.inf, float(np.min(limits.jerk)), math.inf))
+    return tuple(peaks), (f"joint jerk left out: s'' jumps by up to {jump:.4g} m/s^2, where the jerk is an impulse",)
+
+
+def _residuals(robot: Mechanism, path: Path, motion: Motion) -> dict[str, float]:
+    pose, joints = motion.tool.pose, motion.joints.position
+    knots, knot_joints = pose[:, 0], joints[:, 0]
+    by_forward = robot.forward(knot_joints) - knots
+    turns = list(robot.rotations)
+    by_forward[..., turns] = np.remainder(by_forward[..., turns] + math.pi, 2 * math.pi) - math.pi
+    (start,), (end,) = path.evaluate(np.array(0.0), 0), path.evaluate(np.array(path.length), 0)
+    return {
+        "start pose": _largest(pose[0, 0] - start),
+        "end pose": _largest(pose[-1, -1] - end),
+        "start speed": _largest(motion.tool.velocity[0, 0]),
+        "end speed": _largest(motion.tool.velocity[-1, -1]),
+        "closure": _largest(robot.closure_residual(pose, joints)),
+        "forward": _largest(by_forward),
+    }
+
+
+def _largest(values: Array) -> float:
+    """Of the magnitudes; NaN where there is one."""
+    return float(np.abs(values).max())
+
+
+def _least(values: Array) -> float:
+    """NaN where there is one."""
+    return float(values.min())
