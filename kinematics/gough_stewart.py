@@ -57,6 +57,7 @@ class GoughStewart(Mechanism):
     inertia: GoughStewartInertia
     pose_names = ("x", "y", "z", "roll", "pitch", "yaw")
     joint_names = ("q1", "q2", "q3", "q4", "q5", "q6")
+    joint_units = ("m",) * 6
     rotations = (3, 4, 5)
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.6, 0.0, 0.0, 0.0)  # of the default geometry
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=2000.0, speed=0.3, force=500.0)
