@@ -170,7 +170,9 @@ class GoughStewart(Mechanism):
 
     def _allowed(self, joints: Array) -> Array:
         low, high = self.geometry.leg_limits
-        allowed = ((joints > 0.0) & (joints >= low) & (joints <= high)).all(axis=-1, keepdims=True)
+        allowed = ((joints > 0.0) & (joints >= low) & (joints <= high) & np.isfinite(joints)).all(
+            axis=-1, keepdims=True
+        )
         return np.where(allowed, joints, np.nan)
 
     # Rates and forces.
