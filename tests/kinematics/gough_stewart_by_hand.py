@@ -30,9 +30,9 @@ def random_robot(rng: np.random.Generator, planar: bool = False, frames: bool = 
     return GoughStewart(GoughStewart.Geometry(**points, **placed))
 
 
-def random_poses(rng: np.random.Generator, count: int, home: Array = np.array(GoughStewart.home)) -> Array:
+def random_poses(rng: np.random.Generator, count: int) -> Array:
     """(count, 6) within 0.15 m and 0.35 rad of home in each coordinate."""
-    return home + rng.uniform(-1.0, 1.0, (count, 6)) * AROUND_HOME
+    return np.array(GoughStewart.home) + rng.uniform(-1.0, 1.0, (count, 6)) * AROUND_HOME
 
 
 def anywhere(rng: np.random.Generator, count: int) -> Array:
