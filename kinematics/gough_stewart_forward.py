@@ -80,12 +80,17 @@ def assembly_modes(robot: GoughStewart, joints: Array) -> Array:
     a, b = base - centres[0], tool - centres[1]
     unit = float(np.sqrt(np.mean(np.sum(a * a + b * b, axis=1))))
     modes = solver((a / unit).tobytes(), (b / unit).tobytes())
-    turned, place = displacement(modes.nearly_real((joints / unit) ** 2))
+    candidates = modes.nearly_real((joints / unit) ** 2)
+    if not len(candidates):
+        return np.empty((0, 6))
+    turned, place = displacement(candidates)
     place = centres[0] + unit * place - turned @ centres[1]
     found = solve_forward(
         robot, np.broadcast_to(joints, (len(place), 6)), np.concatenate([place, angles(turned)], axis=1), 60
     )
     poses = found.pose[found.converged]
+    if not len(poses):
+        return poses
     apart = _apart(poses, poses, unit) - _uncertainty(robot, poses, unit)[:, None]
     poses = poses[[not (apart[i, :i] < 0.0).any() for i in range(len(poses))]]
     order = np.argsort(_apart(poses, robot.initial_pose[None], robot.characteristic_length)[:, 0], kind="stable")

@@ -24,7 +24,7 @@ def leg_quadrics(base: Array, platform: Array, squares: Array) -> Array:
     constant = np.sum(base * base, axis=-1) + np.sum(platform * platform, axis=-1) - squares
     outer = base[..., :, None] * platform[..., None, :]
     cross = np.cross(platform, base)
-    result = np.zeros((*inner.shape, 8, 8), dtype=np.result_type(base, platform, squares, float))
+    result = np.zeros((*constant.shape, 8, 8), dtype=np.result_type(base, platform, squares, float))
     result[..., range(4), range(4)] = constant[..., None]
     result[..., range(4, 8), range(4, 8)] = 4.0
     result[..., 0, 0] -= 2.0 * inner

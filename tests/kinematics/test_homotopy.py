@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from kinematics.homotopy import refine, track
@@ -30,7 +32,7 @@ def test_four_intersections_of_two_conics_arrive_where_the_square_roots_say() ->
 def test_a_loop_around_a_branch_point_exchanges_the_roots() -> None:
     points = STARTS
     corners = [1, 1j, -1, -1j, 1]
-    for a, b in zip(corners[:-1], corners[1:], strict=True):
+    for a, b in pairwise(corners):
         points, reached = track(path(conics(a, 1), conics(b, 1)), points, 2)
         np.testing.assert_array_equal(reached, 1.0)
     np.testing.assert_allclose(points / points[:, 2:], STARTS * [-1, 1, 1], atol=1e-9)
