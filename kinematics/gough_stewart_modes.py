@@ -33,7 +33,7 @@ _ROUTES = 8  # how many ways to a target are tried
 _ROTATION = 4  # coordinates of e, the first block
 _NEAR_END = 1.0 - 1e-4  # a path that sticks before did not come to a singular end
 _SAME = 1e-6  # distance of unit points below which they are one solution
-_FINITE = 1e-7  # |K| of a unit point above which it is a displacement
+_FINITE = 1e-10  # |K| over the square of e's norm above which a point is a displacement
 _REAL = 1e-2  # imaginary part of a unit point below which a real pose may lie near
 _REGULAR = 1e-9  # the last Newton step at an end that counts as a regular solution
 
@@ -76,8 +76,7 @@ def generic() -> tuple[Platform, Array]:
         LostPaths: monodromy did not find 40.
     """
     rng = np.random.default_rng(1996)
-    home, x = _with_a_solution(rng)
-    known = x[None]
+    home, known = _with_a_pose(rng, _complex(rng, 6, 3), _complex(rng, 6, 3))
     for _ in range(_LOOPS):
         stations = [home, _random_platform(rng), _random_platform(rng), home]
         ends = known
@@ -105,13 +104,13 @@ class ModeSolver:
 
     def __init__(self, base: Array, platform: Array) -> None:
         rng = np.random.default_rng(40)
-        self.start = Platform(base, platform, 3.0 + _complex(rng, 6))
+        self.start, pose = _with_a_pose(rng, base, platform)  # near a singular architecture too, its poses are finite
         origin, known = generic()
         found = [_regular(self.start, self._follow([origin, self.start], known)[0])]
         for _ in range(_ROUTES):  # a second way around must not find more, or there is a third, and so on
             around = [origin, _random_platform(rng), self.start]
             found.append(distinct(np.concatenate([found[-1], _regular(self.start, self._follow(around, known)[0])])))
-            if len(found[-1]) == len(found[-2]):
+            if len(found[-1]) == len(found[-2]) and _distances(pose, found[-1]).min(initial=1.0) < _SAME:
                 self.solutions = found[-1]
                 return
         raise LostPaths(self.start.squares.real)
@@ -183,9 +182,9 @@ def _distances(x: Array, y: Array) -> Array:
 def _regular(target: Platform, ends: Array) -> Array:
     """Those of the ends that are regular displacements (K != 0), refined."""
     refined, last = refine(target.system(), ends, _ROTATION)
-    size = np.abs(np.sum(refined[:, :4] ** 2, axis=1))
-    moved = np.linalg.norm(refined, axis=1)
-    return refined[(last < _REGULAR) & (size > _FINITE) & np.isfinite(moved)]
+    e = refined[:, :_ROTATION]
+    size = np.abs(np.sum(e * e, axis=1)) / np.sum(np.abs(e) ** 2, axis=1)
+    return refined[(last < _REGULAR) & (size > _FINITE)]
 
 
 def _complex(rng: np.random.Generator, *shape: int) -> Array:
@@ -196,12 +195,11 @@ def _random_platform(rng: np.random.Generator) -> Platform:
     return Platform(_complex(rng, 6, 3), _complex(rng, 6, 3), 3.0 * _complex(rng, 6))
 
 
-def _with_a_solution(rng: np.random.Generator) -> tuple[Platform, Array]:
-    """A random complex platform whose leg lengths follow from a random complex displacement."""
-    base, platform, _ = _random_platform(rng)
+def _with_a_pose(rng: np.random.Generator, base: Array, platform: Array) -> tuple[Platform, Array]:
+    """A platform whose leg lengths follow from a random complex displacement, and that displacement (1, 8)."""
     e, f = _complex(rng, 4), _complex(rng, 4)
     f -= e * (e @ f) / (e @ e)
     x = np.concatenate([e, f])
     at_zero = leg_quadrics(base, platform, np.zeros(6))
     squares = np.einsum("i,kij,j->k", x, at_zero, x) / (e @ e)
-    return Platform(base, platform, squares), x / np.linalg.norm(x)
+    return Platform(base, platform, squares), x[None] / np.linalg.norm(x)
