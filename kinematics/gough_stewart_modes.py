@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from kinematics.architecture_singularity import dependence
 from kinematics.errors import LinkwrightError
 from kinematics.homotopy import refine, track
 from kinematics.study import leg_quadrics, study_quadric
@@ -29,6 +30,7 @@ Array = np.ndarray
 
 GENERIC_COUNT = 40
 _LOOPS = 60
+_SURE = 1e-4  # smallest ratio of singular values, at the best pose, for which the count was found reliable
 _ROUTES = 8  # how many ways to a target are tried
 _ROTATION = 4  # coordinates of e, the first block
 _NEAR_END = 1.0 - 1e-4  # a path that sticks before did not come to a singular end
@@ -39,13 +41,13 @@ _REGULAR = 1e-9  # the last Newton step at an end that counts as a regular solut
 
 
 class LostPaths(LinkwrightError):
-    """The paths to a set of leg lengths could not be certified, so the assembly modes are not known."""
+    """The continuation could not be certified, so the assembly modes are not known."""
 
     exit_status = 1
 
-    def __init__(self, squares: Array) -> None:
-        self.leg_lengths = tuple(float(q) for q in np.sqrt(squares))
-        super().__init__(f"assembly modes for leg lengths {self.leg_lengths}: the continuation lost a path")
+    def __init__(self, stage: str, found: object, expected: str) -> None:
+        self.stage, self.found, self.expected = stage, found, expected
+        super().__init__(f"assembly modes, {stage}: found {found}; expected {expected}")
 
 
 class Platform(NamedTuple):
@@ -86,7 +88,7 @@ def generic() -> tuple[Platform, Array]:
         known = distinct(np.concatenate([known, _regular(home, ends)]))
         if len(known) >= GENERIC_COUNT:
             return home, known
-    raise LostPaths(home.squares.real)
+    raise LostPaths("generic platform", f"{len(known)} poses", f"{GENERIC_COUNT}")
 
 
 @lru_cache(maxsize=64)
@@ -100,9 +102,16 @@ class ModeSolver:
 
     Args:
         base, platform: (6, 3) joint centres, each about its centroid and of size near 1.
+
+    Raises:
+        LostPaths: two ways to the geometry kept different poses, or it is so near a singular architecture that some
+            of its poses may be too far away to be followed.
     """
 
     def __init__(self, base: Array, platform: Array) -> None:
+        independent = dependence(base, platform)
+        if independent < _SURE:
+            raise LostPaths("this geometry", f"legs independent by {independent:.1e} only", f"at least {_SURE:g}")
         rng = np.random.default_rng(40)
         self.start, pose = _with_a_pose(rng, base, platform)  # near a singular architecture too, its poses are finite
         origin, known = generic()
@@ -113,7 +122,7 @@ class ModeSolver:
             if len(found[-1]) == len(found[-2]) and _distances(pose, found[-1]).min(initial=1.0) < _SAME:
                 self.solutions = found[-1]
                 return
-        raise LostPaths(self.start.squares.real)
+        raise LostPaths("this geometry", [len(f) for f in found], "the same poses on two ways to it")
 
     @staticmethod
     def _follow(stations: list[Platform], points: Array) -> tuple[Array, Array]:
@@ -148,7 +157,7 @@ class ModeSolver:
                 return ends
             around = self.start._replace(squares=3.0 * _complex(rng, 6))
             stations = [self.start, around, target]
-        raise LostPaths(squares)
+        raise LostPaths("these leg lengths", f"{_ROUTES} ways with a lost path", "one that loses none")
 
     def nearly_real(self, squares: Array) -> Array:
         """(6,) squared lengths -> (k, 8) real points at or close to every real solution."""
