@@ -162,7 +162,8 @@ class GoughStewart(Mechanism):
         """
         points = ca.reshape(g.platform_points, 3, 6)
         centred = points - ca.repmat(ca.sum2(points) / 6, 1, 6)
-        return ca.SX.ones(6), 8 * (ca.sumsqr(centred) / 6) ** 1.5
+        mean_square = ca.sumsqr(centred) / 6
+        return ca.SX.ones(6), 8 * mean_square * ca.sqrt(mean_square)
 
     def inverse(self, pose: Array) -> Array:
         """(..., 6) -> (..., 6) leg lengths [m]; a NaN row where a leg is beyond its limits or has no length."""
