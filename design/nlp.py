@@ -41,6 +41,10 @@ class Problem:
     characteristic_length: float
     spare: float = 1e-4
 
+    def bounds(self) -> tuple[Array, Array]:
+        """(k,) lowest and (k,) highest values of the variables."""
+        return np.array([v.low for v in self.variables]), np.array([v.high for v in self.variables])
+
     def places(self) -> list[int]:
         """Where each variable stands in the geometry's vector."""
         starts = np.concatenate([[0], np.cumsum(list(self.robot.geometry.sizes().values()))])
@@ -79,8 +83,8 @@ class NlpSolution:
 
 def solve(problem: Problem, poses: Array, start: Array) -> NlpSolution:
     """Solve over the poses (p, n) from a start (k,)."""
-    low = np.array([v.low for v in problem.variables])
-    span = np.array([v.high for v in problem.variables]) - low
+    low, high = problem.bounds()
+    span = high - low
     scaled, t = ca.MX.sym("scaled", len(low)), ca.MX.sym("t")
     values = low + span * scaled
     geometry = ca.MX(problem.robot.geometry.vector())

@@ -7,6 +7,7 @@ grid's. The answer is still a sample's, an upper bound of the true worst, and it
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -88,7 +89,7 @@ def worst_poses(
 def _lowest_of_grid(value, counts: tuple[int, ...], keep: int) -> tuple[Array, int]:  # type: ignore[no-untyped-def]
     """(keep, k) lowest points of the unit grid, and its size; the grid is walked in slices, never held whole."""
     axes = [np.linspace(0.0, 1.0, c) for c in counts]
-    rest = np.stack(np.meshgrid(*axes[1:], indexing="ij"), axis=-1).reshape(-1, len(counts) - 1)
+    rest = np.array(list(product(*axes[1:])))
     best_values, best_points = np.empty(0), np.empty((0, len(counts)))
     for first in axes[0]:
         points = np.column_stack([np.full(len(rest), first), rest])

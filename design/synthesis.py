@@ -75,7 +75,7 @@ def synthesise(
     starts: int = 3,
     about: int = DENSE,
     max_rounds: int = 20,
-    tolerance: float = 1e-4,
+    tolerance: float = 1e-5,
     progress: Progress = lambda _: None,
 ) -> Synthesis:
     """Maximise the worst objective over the region.
@@ -137,7 +137,7 @@ def _not_converged(what: str, solution: NlpSolution) -> SynthesisFailed:
 
 def _random_starts(problem: Problem, poses: Array, rng: np.random.Generator, count: int) -> list[Array]:
     """Random variables whose geometry reaches every pose; the others would start IPOPT on NaN."""
-    low, high = (np.array([getattr(v, side) for v in problem.variables]) for side in ("low", "high"))
+    low, high = problem.bounds()
     found: list[Array] = []
     for _ in range(200 * count):
         if len(found) == count:
@@ -150,7 +150,8 @@ def _random_starts(problem: Problem, poses: Array, rng: np.random.Generator, cou
 
 def _robot(problem: Problem, values: Array) -> Mechanism:
     """The mechanism with these variables, rounded to the micrometre so that a file holds exactly what was checked."""
-    vector = problem.geometry(np.round(values, 6))
+    low, high = problem.bounds()
+    vector = problem.geometry(np.clip(np.round(values, 6), low, high))
     return type(problem.robot)(problem.robot.Geometry.from_vector(vector), problem.robot.inertia)
 
 

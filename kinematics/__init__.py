@@ -7,8 +7,9 @@ from kinematics.gough_stewart_modes import LostPaths
 from kinematics.heli4 import Heli4
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Mechanism
+from kinematics.peppermill import Peppermill
 
-MECHANISMS: dict[str, type[Mechanism]] = {cls.__name__: cls for cls in (Heli4, GoughStewart)}
+MECHANISMS: dict[str, type[Mechanism]] = {cls.__name__: cls for cls in (Heli4, Peppermill, GoughStewart)}
 
 __all__ = [
     "MECHANISMS",
@@ -21,6 +22,7 @@ __all__ = [
     "LinkwrightError",
     "LostPaths",
     "Mechanism",
+    "Peppermill",
     "SingularArchitecture",
     "UnreachablePose",
 ]

@@ -57,11 +57,8 @@ class GeometryRecord:
         for f in fields(self):
             given, wanted = getattr(self, f.name), _shape(f)
             words = " rows of ".join(str(k) for k in wanted) + " numbers" if wanted else "a number"
-            try:
-                array = np.asarray(given, dtype=float)
-            except (TypeError, ValueError):
-                raise self._invalid(f.name, given, words) from None
-            if array.shape != wanted:
+            array = _numbers(given)
+            if array is None or array.shape != wanted:
                 raise self._invalid(f.name, given, words)
             if np.any(np.isnan(array)) or (f.metadata.get("bounded", True) and np.any(np.isinf(array))):
                 raise self._invalid(f.name, given, "finite values")
@@ -74,7 +71,7 @@ class GeometryRecord:
 
     @classmethod
     def _invalid(cls, name: str, found: object, expected: str) -> InvalidGeometry:
-        return InvalidGeometry(cls.__qualname__.split(".")[0], name, found, expected)
+        return InvalidGeometry(cls.__qualname__.split(".")[0].removesuffix("Geometry"), name, found, expected)
 
     @classmethod
     def sizes(cls) -> dict[str, int]:
@@ -128,3 +125,12 @@ def _shape(f: Field[Any]) -> tuple[int, ...]:
 def _frozen(array: Vector) -> Any:
     """A number, a tuple, or a tuple of tuples: hashable."""
     return tuple(_frozen(row) for row in array) if array.ndim else float(array)
+
+
+def _numbers(given: object) -> Vector | None:
+    """As an array of floats; None where any of it is not a number, such as text that only looks like one."""
+    try:
+        array = np.asarray(given)
+    except ValueError:  # ragged
+        return None
+    return array.astype(float) if array.dtype.kind in "iuf" else None

@@ -17,7 +17,7 @@ import numpy as np
 from kinematics.bodies import Bodies
 from kinematics.errors import InvalidShape
 from kinematics.geometry import TURN, GeometryRecord, angle, length, screw_pitch
-from kinematics.heli4_forward import plates_of_root, quartic
+from kinematics.heli4_forward import Plates, plates
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array, Build
@@ -78,6 +78,7 @@ class Heli4(RodLevel):
     joint_names = ("q1", "q2", "q3", "q4")
     joint_units = ("rad",) * 4
     rotations = (3,)
+    counts_turns = True
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.7, 0.0)
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=150.0)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta", "epsilon_1", "epsilon_2")
@@ -137,9 +138,10 @@ class Heli4(RodLevel):
 
     @staticmethod
     def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """The elbow-out root; the sum of two angles does not jump where q passes pi, as (14) does."""
+        """The elbow-out root, in (-pi/2, 3 pi/2]: the cut lies where an arm points inward, not inside the workspace as
+        with (14), which jumps where q passes pi."""
         m, n, right, root = Heli4._inverse_terms(pose, g)
-        return ca.atan2(n, m) + ca.atan2(root, right)
+        return ca.pi / 2 + ca.atan2(n * root - m * right, n * right + m * root)
 
     @staticmethod
     def joint_cosines_and_sines(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
@@ -236,39 +238,55 @@ class Heli4(RodLevel):
     # The forward model.
 
     @staticmethod
-    def _spheres(joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """s_i (3, 4) = B_i - A_i with both plates at the origin; (18) with h_i minus the actuator's own height."""
-        return Heli4.platform_points(ca.SX(4, 1), g) - Heli4.arm_points(joints, g)
+    def _plates(model: Model) -> Plates:
+        """From s_i = B_i - A_i with both plates at the origin; (18) with h_i minus the actuator's own height."""
+        spheres = Heli4.platform_points(ca.SX(4, 1), model.g) - Heli4.arm_points(model.joints, model.g)
+        return plates(spheres, model.g.rod_length)
 
-    def _roots(self, joints: Array) -> Array:
-        def build(model: Model) -> Build:
-            return [model.joints], [quartic(self._spheres(model.joints, model.g), model.g.rod_length)]
-
-        return real_roots(evaluate(self.program("quartic", build), joints)[0])
-
-    def _poses_of(self, joints: Array, roots: Array) -> Array:
-        """(..., 4) joints and (...,) roots -> (..., 4) poses."""
+    def _poses_of(self, joints: Array, w: Array, t: Array) -> Array:
+        """(..., 4) joints and the plates' unknowns w (...,) and t (...,) -> (..., 4) poses."""
 
         def build(model: Model) -> Build:
-            w = ca.SX.sym("w")
-            xy, lower, upper = plates_of_root(w, self._spheres(model.joints, model.g), model.g.rod_length)
-            return [w, model.joints], [ca.vertcat(xy, lower, (upper - lower) / (model.g.pitch / TURN))]
+            w, t = ca.SX.sym("w"), ca.SX.sym("t")
+            position = self._plates(model).positions(w, t)
+            turn = (position[3] - position[2]) / (model.g.pitch / TURN)
+            return [w, t, model.joints], [ca.vertcat(position[:3], turn)]
 
-        return evaluate(self.program("pose_of_root", build), roots[..., None], joints)[0]
+        return evaluate(self.program("pose_of_root", build), w[..., None], t[..., None], joints)[0]
 
     def forward(self, joints: Array) -> Array:
         """(..., 4) -> (..., 4): both pairs of limbs on the lower sheet, the quartic's smallest real root."""
+
+        def build(model: Model) -> Build:
+            found = self._plates(model)
+            return [model.joints], [found.quartic_in_w(), found.kappa]
+
         joints = self._joints(joints)
-        return self._poses_of(joints, self._roots(joints)[..., 0])
+        quartic, kappa = evaluate(self.program("quartic", build), joints)
+        w = real_roots(quartic, most=1)[..., 0]
+        t = np.divide(kappa[..., 0], w, out=np.full_like(w, np.nan), where=w != 0.0)
+        return self._poses_of(joints, w, t)
 
     def assembly_modes(self, joints: Array) -> Array:
         """(4,) -> (k, 4), every real pose with these joints, at most four; the working one first."""
+
+        def build(model: Model) -> Build:
+            found = self._plates(model)
+            return [model.joints], [found.quartic_in_w(), found.quartic_in_t(), found.kappa]
+
         joints = self._joints(joints)
         if joints.ndim != 1:
             raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
-        roots = self._roots(joints)
-        roots = roots[np.isfinite(roots)]
-        return self._poses_of(np.broadcast_to(joints, (roots.size, 4)), roots)
+        in_w, in_t, (kappa,) = evaluate(self.program("quartics", build), joints)
+        # w t = kappa: each unknown serves where it is the larger one, up to a factor that no symmetry makes a tie.
+        least, tie = np.sqrt(np.abs(kappa)), 0.9
+        w, t = (
+            roots[(np.abs(roots) >= part * least) & (roots != 0.0)]
+            for roots, part in ((real_roots(in_w), tie), (real_roots(in_t), 1 / tie))
+        )
+        found = np.concatenate([np.stack([w, kappa / w]), np.stack([kappa / t, t])], axis=1)
+        w, t = found[:, np.argsort(found[0])]
+        return self._poses_of(np.broadcast_to(joints, (w.size, 4)), w, t)
 
 
 def _heights(values: ca.SX) -> ca.SX:

@@ -2,92 +2,74 @@
 
 Plate 1 is at (x, y, Z), plate 2 at (x, y, W). Each rod is a sphere |X + s_i|^2 = l^2 with X = (x, y, Z) for rods 1 and
 2 and (x, y, W) for 3 and 4. With u = Z + W and v = Z - W, the differences within the pairs give x and y linearly in u
-and v, the difference of the pairs' means is bilinear, u v + alpha u + beta v + gamma = 0, and their sum leaves a
-quartic in w = u + beta. Unlike expressions (19)-(35) of Heli4's paper it divides by nothing that vanishes in the
-workspace, and its smallest real root is the working assembly mode: both pairs of rods on the lower sheet.
+and v, and the difference of the pairs' means is bilinear, u v + alpha u + beta v + gamma = 0. In w = u + beta and
+t = v + alpha that is w t = kappa, and the sum of the means is a conic; together they leave a quartic in w, and the
+same one backwards in t. Unlike expressions (19)-(35) of Heli4's paper nothing here divides by what vanishes in the
+workspace. The smallest real w is the working assembly mode: both pairs of rods on the lower sheet.
 """
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+from typing import NamedTuple
 
 import casadi as ca
 
-Polynomial = list[ca.SX]  # highest power first
+
+class Plates(NamedTuple):
+    """w t = kappa and a w^2 + b w t + c t^2 + d w + e t + f = 0, and the position that belongs to (w, t)."""
+
+    kappa: ca.SX
+    conic: tuple[ca.SX, ca.SX, ca.SX, ca.SX, ca.SX, ca.SX]
+    by_w: ca.SX  # (4,) of x, y, Z, W
+    by_t: ca.SX
+    constant: ca.SX
+
+    def quartic_in_w(self) -> ca.SX:
+        """(5,) coefficients, highest power first."""
+        a, b, c, d, e, f = self.conic
+        return ca.vertcat(a, d, f + b * self.kappa, e * self.kappa, c * self.kappa**2)
+
+    def quartic_in_t(self) -> ca.SX:
+        """(5,) the same with the unknowns exchanged, sharp where w is small."""
+        a, b, c, d, e, f = self.conic
+        return ca.vertcat(c, e, f + b * self.kappa, d * self.kappa, a * self.kappa**2)
+
+    def positions(self, w: ca.SX, t: ca.SX) -> ca.SX:
+        """(4,) x, y, Z, W."""
+        return self.by_w * w + self.by_t * t + self.constant
 
 
-def _forms(s: ca.SX, rod_length: ca.SX) -> SimpleNamespace:
-    """The linear and bilinear forms above, from s (3, 4)."""
+def plates(s: ca.SX, rod_length: ca.SX) -> Plates:
+    """From s (3, 4) and the rods' common length."""
     squares = ca.sum1(s * s).T - rod_length**2
     first, second = s[:, 0] - s[:, 1], s[:, 2] - s[:, 3]
     det = first[0] * second[1] - first[1] * second[0]
-    solve = ca.vertcat(ca.horzcat(second[1], -first[1]), ca.horzcat(-second[0], first[0])) / det
-    by_u = -solve @ ca.vertcat(first[2], second[2]) / 2
-    by_v = -solve @ ca.vertcat(first[2], -second[2]) / 2
-    constant = -solve @ ca.vertcat(squares[0] - squares[1], squares[2] - squares[3]) / 2
+    solve = -ca.vertcat(ca.horzcat(second[1], -first[1]), ca.horzcat(-second[0], first[0])) / (2 * det)
+    by_u = solve @ ca.vertcat(first[2], second[2])
+    by_v = solve @ ca.vertcat(first[2], -second[2])
+    constant = solve @ ca.vertcat(squares[0] - squares[1], squares[2] - squares[3])
     a, b = (s[:, 0] + s[:, 1]) / 2, (s[:, 2] + s[:, 3]) / 2
-    apart = 2 * (a[:2] - b[:2])
-    return SimpleNamespace(
-        by_u=by_u,
-        by_v=by_v,
-        constant=constant,
-        alpha=apart.T @ by_u + a[2] - b[2],
-        beta=apart.T @ by_v + a[2] + b[2],
-        gamma=apart.T @ constant + (squares[0] + squares[1] - squares[2] - squares[3]) / 2,
-        together=2 * (a[:2] + b[:2]),
-        a_z=a[2],
-        b_z=b[2],
-        squares=ca.sum1(squares) / 2,
+    apart, together = 2 * (a[:2] - b[:2]), 2 * (a[:2] + b[:2])
+    alpha = apart.T @ by_u + a[2] - b[2]
+    beta = apart.T @ by_v + a[2] + b[2]
+    gamma = apart.T @ constant + (squares[0] + squares[1] - squares[2] - squares[3]) / 2
+    centre = constant - by_u * beta - by_v * alpha  # x and y at w = t = 0
+    slope = 4 * centre + together
+    conic = (
+        2 * ca.sumsqr(by_u) + 0.5,
+        4 * ca.dot(by_u, by_v),
+        2 * ca.sumsqr(by_v) + 0.5,
+        ca.dot(slope, by_u) + a[2] + b[2] - beta,
+        ca.dot(slope, by_v) + a[2] - b[2] - alpha,
+        ca.dot(2 * centre + together, centre)
+        + (beta / 2 - a[2] - b[2]) * beta
+        + (alpha / 2 - a[2] + b[2]) * alpha
+        + ca.sum1(squares) / 2,
     )
-
-
-def quartic(s: ca.SX, rod_length: ca.SX) -> ca.SX:
-    """(5,) coefficients in w, highest power first; x, y, u and v enter multiplied by w."""
-    f = _forms(s, rod_length)
-    uw: Polynomial = [ca.SX(1), -f.beta, ca.SX(0)]
-    vw: Polynomial = [-f.alpha, f.alpha * f.beta - f.gamma]
-    xw, yw = (_add(_scale(f.by_u[k], uw), _scale(f.by_v[k], vw), [f.constant[k], ca.SX(0)]) for k in range(2))
-    linear = _add(
-        _scale(f.together[0], xw),
-        _scale(f.together[1], yw),
-        _scale(f.a_z + f.b_z, uw),
-        _scale(f.a_z - f.b_z, vw),
-        [f.squares, ca.SX(0)],
+    return Plates(
+        kappa=alpha * beta - gamma,
+        conic=conic,
+        by_w=ca.vertcat(by_u, 0.5, 0.5),
+        by_t=ca.vertcat(by_v, 0.5, -0.5),
+        constant=ca.vertcat(centre, -(alpha + beta) / 2, (alpha - beta) / 2),
     )
-    half = ca.SX(0.5)
-    squares = _add(
-        _scale(ca.SX(2), _multiply(xw, xw)),
-        _scale(ca.SX(2), _multiply(yw, yw)),
-        _scale(half, _multiply(uw, uw)),
-        _scale(half, _multiply(vw, vw)),
-    )
-    return ca.vertcat(*_add(squares, [*linear, ca.SX(0)]))
-
-
-def plates_of_root(w: ca.SX, s: ca.SX, rod_length: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """(x, y), Z and W that belong to a root of the quartic."""
-    f = _forms(s, rod_length)
-    u = w - f.beta
-    v = -(f.alpha * u + f.gamma) / w
-    return f.by_u * u + f.by_v * v + f.constant, (u + v) / 2, (u - v) / 2
-
-
-def _multiply(p: Polynomial, q: Polynomial) -> Polynomial:
-    result = [ca.SX(0)] * (len(p) + len(q) - 1)
-    for i, a in enumerate(p):
-        for j, b in enumerate(q):
-            result[i + j] = result[i + j] + a * b
-    return result
-
-
-def _scale(factor: ca.SX, p: Polynomial) -> Polynomial:
-    return [factor * c for c in p]
-
-
-def _add(*polynomials: Polynomial) -> Polynomial:
-    size = max(len(p) for p in polynomials)
-    result = [ca.SX(0)] * size
-    for p in polynomials:
-        for i, a in enumerate(p):
-            result[size - len(p) + i] = result[size - len(p) + i] + a
-    return result

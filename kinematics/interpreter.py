@@ -6,19 +6,15 @@ work rows stay in the cache. The kernel is compiled once per machine and then ca
 
 from __future__ import annotations
 
-import os
-from concurrent.futures import ThreadPoolExecutor
-from itertools import pairwise
-
 import casadi as ca
 import numba
 import numpy as np
 
+from kinematics.errors import InvalidValue
 from kinematics.program import Op, Program
+from kinematics.threads import over_spans
 
-BLOCK = 128
-_THREADS = max(1, os.cpu_count() or 1)
-_LEAST_PER_THREAD = 4096
+BLOCK = 256
 
 (CONST, INPUT, OUTPUT, ASSIGN, ADD, SUB, MUL, DIV, NEG, SQRT, SQ, TWICE, INV, SIN, COS, ATAN2, FABS, FMIN, FMAX) = (
     int(Op(k)) for k in range(19)
@@ -34,20 +30,20 @@ def evaluate(program: Program, *inputs: np.ndarray) -> list[np.ndarray]:
 
     Returns:
         One array (..., rows, columns) for each output; a single column is dropped.
+
+    Raises:
+        InvalidValue: an input has not the columns that the function wants.
     """
     lead = inputs[0].shape[:-1]
     count = int(np.prod(lead, dtype=np.int64))
-    columns = [np.asarray(a, dtype=float).reshape(count, -1) for a in inputs]
+    columns = [np.asarray(a, dtype=float).reshape(count, a.shape[-1]) for a in inputs]
+    found = tuple(a.shape[1] for a in columns)
+    if found != program.inputs:
+        raise InvalidValue("columns of the inputs", found, str(program.inputs))
     table = columns[0] if len(columns) == 1 else np.concatenate(columns, axis=1)
     table = np.ascontiguousarray(table)
     out = np.zeros((count, program.output_size))
-    threads = min(_THREADS, max(1, count // _LEAST_PER_THREAD))
-    if threads == 1:
-        _run(program, table, out)
-    else:
-        edges = np.linspace(0, count, threads + 1).astype(int)
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(lambda span: _run(program, table[slice(*span)], out[slice(*span)]), pairwise(edges)))
+    over_spans(count, lambda span: _run(program, table[span], out[span]))
     results, start = [], 0
     for rows, cols in program.outputs:
         part = out[:, start : start + rows * cols]
@@ -69,71 +65,71 @@ def _run(program: Program, table: np.ndarray, out: np.ndarray) -> None:
 
 @numba.njit(nogil=True, cache=True, error_model="numpy")
 def _kernel(op, left, right, target, constant, work_size, table, out):  # type: ignore[no-untyped-def]
-    work = np.zeros((work_size, BLOCK))
-    for first in range(0, table.shape[0], BLOCK):
-        size = min(BLOCK, table.shape[0] - first)
+    width = min(BLOCK, (table.shape[0] + 7) // 8 * 8)  # a single pose does not pay for a whole block
+    work = np.zeros((work_size, width))
+    for first in range(0, table.shape[0], width):
+        size = min(width, table.shape[0] - first)
         for k in range(op.shape[0]):
             code = op[k]
+            # Unsigned, so that no index needs a test for counting from the end.
+            x, y, z = np.uint64(left[k]), np.uint64(right[k]), np.uint64(target[k])
             if code == OUTPUT:
-                a = work[left[k]]
-                j = target[k]
+                a = work[x]
                 for i in range(size):
-                    out[first + i, j] = a[i]
+                    out[first + i, z] = a[i]
                 continue
-            r = work[target[k]]
+            r = work[z]
             if code == INPUT:
-                j = left[k]
                 for i in range(size):
-                    r[i] = table[first + i, j]
-                for i in range(size, BLOCK):
-                    r[i] = r[0]
+                    r[i] = table[first + i, x]
+                r[size:] = r[0]
             elif code == CONST:
                 r[:] = constant[k]
             else:
-                _apply(code, work[left[k]], work[right[k]], r)
+                _apply(code, work[x], work[y], r)
 
 
 @numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
 def _apply(code, a, b, r):  # type: ignore[no-untyped-def]
     """One instruction over one block; numba turns each loop into vector code."""
     if code == ADD:
-        for i in range(BLOCK):
+        for i in range(r.size):
             r[i] = a[i] + b[i]
     elif code == MUL:
-        for i in range(BLOCK):
+        for i in range(r.size):
             r[i] = a[i] * b[i]
     elif code == SUB:
-        for i in range(BLOCK):
+        for i in range(r.size):
             r[i] = a[i] - b[i]
     elif code == SQ:
-        for i in range(BLOCK):
+        for i in range(r.size):
             r[i] = a[i] * a[i]
     elif code == DIV:
-        for i in range(BLOCK):
+        for i in range(r.size):
             r[i] = a[i] / b[i]
     elif code == SQRT:
-        for i in range(BLOCK):
+        for i in range(r.size):
             r[i] = np.sqrt(a[i])
     elif code == NEG:
-        for i in range(BLOCK):
+        for i in range(r.size):
             r[i] = -a[i]
     elif code == TWICE:
-        for i in range(BLOCK):
+        for i in range(r.size):
             r[i] = a[i] + a[i]
     elif code == INV:
-        for i in range(BLOCK):
+        for i in range(r.size):
             r[i] = 1.0 / a[i]
     elif code == FABS:
-        for i in range(BLOCK):
+        for i in range(r.size):
             r[i] = abs(a[i])
     elif code == FMIN:
-        for i in range(BLOCK):
+        for i in range(r.size):
             r[i] = np.minimum(a[i], b[i])
     elif code == FMAX:
-        for i in range(BLOCK):
+        for i in range(r.size):
             r[i] = np.maximum(a[i], b[i])
     elif code == ASSIGN:
-        for i in range(BLOCK):
+        for i in range(r.size):
             r[i] = a[i]
     else:
         _apply_rare(code, a, b, r)
@@ -142,7 +138,7 @@ def _apply(code, a, b, r):  # type: ignore[no-untyped-def]
 @numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
 def _apply_rare(code, a, b, r):  # type: ignore[no-untyped-def]
     """The operations that cost a library call or are seldom seen, item by item."""
-    for i in range(BLOCK):
+    for i in range(r.size):
         x, y = a[i], b[i]
         if code == SIN:
             v = np.sin(x)

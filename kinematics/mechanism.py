@@ -17,7 +17,7 @@ import numpy as np
 from kinematics.bodies import Bodies
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.geometry import GeometryRecord
-from kinematics.indices import FviBounds, fvi_components, homogeneous, isotropic_components
+from kinematics.indices import FviBounds, fvi_components, homogeneous, isotropic_components, smallest
 from kinematics.interpreter import bulk, evaluate
 from kinematics.linear import determinant
 from kinematics.model import Model, model_of
@@ -39,6 +39,7 @@ class Mechanism(ABC):
     joint_names: ClassVar[tuple[str, ...]]
     joint_units: ClassVar[tuple[str, ...]]  # rad or m
     rotations: ClassVar[tuple[int, ...]]  # which pose coordinates are angles
+    counts_turns: ClassVar[bool] = False  # whether an angle a turn on is another pose, as on a screw
     home: ClassVar[tuple[float, ...]]  # a pose well inside the workspace
     fvi_bounds: ClassVar[FviBounds]
     margins: ClassVar[tuple[str, ...]] = ("reach", "fvi", "J_q", "det_J_q", "det_J_x")
@@ -66,7 +67,7 @@ class Mechanism(ABC):
     @staticmethod
     @abstractmethod
     def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(m,) how far each limb is from not reaching [m]; negative where it cannot."""
+        """How far each limb is from not reaching [m], one row a limb; negative where it cannot."""
 
     @staticmethod
     @abstractmethod
@@ -82,6 +83,11 @@ class Mechanism(ABC):
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
         """Named polylines (3, k) that draw the mechanism: base, arms, rods, platform."""
 
+    @classmethod
+    def drives(cls, g: SimpleNamespace) -> ca.SX:  # noqa: ARG003
+        """(m, m) constant C with actuators = C joints; the identity unless the drives couple joints."""
+        return ca.SX.eye(len(cls.joint_names))
+
     @staticmethod
     def joint_cosines_and_sines(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX] | None:  # noqa: ARG004
         """(m,) cosines and (m,) sines of the joints at a pose, where the joints are revolute."""
@@ -96,6 +102,16 @@ class Mechanism(ABC):
     def closure_by_twist(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
         """(m, n) derivative of the closure by the twist; to be replaced where Euler angles would spoil it."""
         return ca.jacobian(cls.closure(pose, joints, g), pose) @ cls.pose_rate_map(pose)
+
+    @property
+    def actuator_names(self) -> tuple[str, ...]:
+        """What C joints is called; the joints themselves unless the drives couple them."""
+        return self.joint_names
+
+    @property
+    def actuator_units(self) -> tuple[str, ...]:
+        """Rad or m."""
+        return self.joint_units
 
     @property
     @abstractmethod
@@ -130,35 +146,45 @@ class Mechanism(ABC):
         pose, joints = self._together(pose, joints)
         return evaluate(program, pose, joints)[0]
 
-    def jacobians(self, pose: Array) -> tuple[Array, Array]:
-        """J_q (..., m, m) and J_x (..., m, n), with J_q q' = J_x t."""
-        diagonal, j_x = self._evaluate("jacobians", lambda model: [model.j_q_at_pose, model.j_x_at_pose], pose)
+    def jacobians(self, pose: Array, joints: Array | None = None) -> tuple[Array, Array]:
+        """J_q (..., m, m) and J_x (..., m, n), with J_q q' = J_x t; working mode, unless `joints` (..., m) say."""
+        if joints is None:
+            diagonal, j_x = self._evaluate("jacobians", lambda model: [model.j_q_at_pose, model.j_x_at_pose], pose)
+        else:
+            program = self.program("jacobians_of_joints", lambda m: ([m.pose, m.joints], [m.j_q, m.j_x]))
+            diagonal, j_x = evaluate(program, *self._together(self._poses(pose), self._joints(joints)))
         j_q = np.zeros((*diagonal.shape, diagonal.shape[-1]))
         j_q[..., range(diagonal.shape[-1]), range(diagonal.shape[-1])] = diagonal
         return j_q, j_x
 
     def inverse_jacobian(self, pose: Array) -> Array:
-        """(..., m, n) J_m = J_q^-1 J_x, so that q' = J_m t."""
+        """(..., m, n) J_m = J_q^-1 J_x, so that q' = J_m t; of the joints, see `actuator_jacobian`."""
         return self._evaluate("inverse_jacobian", lambda model: [model.inverse_jacobian], pose)[0]
 
+    def actuator_jacobian(self, pose: Array) -> Array:
+        """(..., m, n) C J_m: the rates of the actuators, which carry the limits, from the twist."""
+        return self._evaluate("actuator_jacobian", lambda model: [model.actuator_jacobian], pose)[0]
+
     def isotropic(self, pose: Array, characteristic_length: float | None = None) -> tuple[Array, Array]:
-        """v_w (...,) and f_w (...,): worst speed and force for unit joint speed and effort; Shayya et al. (40)."""
+        """v_w (...,) and f_w (...,): worst speed and force for unit actuator speed and effort; Shayya et al. (40)."""
         length = self._length(characteristic_length)
-        speeds, forces = self._evaluate(
-            ("isotropic", length), lambda model: isotropic_components(self._homogeneous(model, length)), pose
-        )
-        return speeds.min(axis=-1), forces.min(axis=-1)
+
+        def worst(model: Model) -> list[ca.SX]:
+            return [smallest(v) for v in isotropic_components(self._homogeneous(model, length))]
+
+        speed, force = self._evaluate(("isotropic", length), worst, pose)
+        return speed[..., 0], force[..., 0]
 
     def fvi(self, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None) -> Array:
         """(...,) min(v_w / v_wl, f_w / f_wl); Shayya et al. (39). NaN where the pose is out of reach."""
         return self.margin("fvi", pose, bounds, characteristic_length)
 
     def condition_number(self, pose: Array, characteristic_length: float | None = None) -> Array:
-        """(...,) 2-norm condition number of J_mw; inf on a singularity, NaN out of reach."""
+        """(...,) 2-norm condition number of J_mw at the actuators; inf on a singularity, NaN out of reach."""
         length = self._length(characteristic_length)
         (j_mw,) = self._evaluate(("homogeneous", length), lambda model: [self._homogeneous(model, length)], pose)
         good = np.isfinite(j_mw).all(axis=(-2, -1))
-        result = np.full(good.shape, np.nan)
+        result = np.where(np.isnan(j_mw).any(axis=(-2, -1)), np.nan, np.inf)
         result[good] = np.linalg.cond(j_mw[good])
         return result
 
@@ -172,10 +198,10 @@ class Mechanism(ABC):
         """
         bounds = bounds or self.fvi_bounds
         length = self._length(characteristic_length)
-        (values,) = self._evaluate(
-            (name, bounds, length), lambda _: [self.margin_components(name, bounds, length)], pose
+        (value,) = self._evaluate(
+            (name, bounds, length), lambda _: [smallest(self.margin_components(name, bounds, length))], pose
         )
-        return values.min(axis=-1)
+        return value[..., 0]
 
     def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
         """A margin's components in the model's symbols `pose` and `geometry`, each to be at least the bound.
@@ -226,7 +252,7 @@ class Mechanism(ABC):
     # Helpers.
 
     def _homogeneous(self, model: Model, length: float) -> ca.SX:
-        return homogeneous(model.inverse_jacobian, self.rotations, length)
+        return homogeneous(model.actuator_jacobian, self.rotations, length)
 
     def _length(self, given: float | None) -> float:
         length = self.characteristic_length if given is None else float(given)
@@ -249,10 +275,10 @@ class Mechanism(ABC):
         return self._programs[key]
 
     def _poses(self, pose: Array) -> Array:
-        return _checked(pose, "pose", self.pose_names)
+        return checked(pose, "pose", self.pose_names)
 
     def _joints(self, joints: Array) -> Array:
-        return _checked(joints, "joints", self.joint_names)
+        return checked(joints, "joints", self.joint_names)
 
     @staticmethod
     def _together(first: Array, second: Array) -> tuple[Array, Array]:
@@ -263,7 +289,12 @@ class Mechanism(ABC):
         )
 
 
-def _checked(values: Array, what: str, names: tuple[str, ...]) -> Array:
+def checked(values: Array, what: str, names: tuple[str, ...]) -> Array:
+    """The values as an array (..., len(names)).
+
+    Raises:
+        InvalidShape: the last axis does not match.
+    """
     array = np.asarray(values, dtype=float)
     if array.ndim == 0 or array.shape[-1] != len(names):
         raise InvalidShape(what, names, array.shape)

@@ -73,7 +73,7 @@ class Program:
     """Instructions in order: work[target] = op(work[left], work[right]).
 
     INPUT reads column `left` of the inputs laid side by side; OUTPUT writes column `target` of the outputs laid side
-    by side (dense, column by column); CONST loads `constant`.
+    by side (dense, row by row); CONST loads `constant`.
     """
 
     op: np.ndarray  # (k,) int64
@@ -103,16 +103,17 @@ class Program:
         output_start = np.concatenate([[0], np.cumsum([r * c for r, c in outputs])])
         places = [_dense_places(function.sparsity_out(i)) for i in range(function.n_out())]
         rows: list[tuple[int, int, int, int, float]] = []
+        load, take, give = Op.CONST, Op.INPUT, Op.OUTPUT
         for k in range(function.n_instructions()):
             code = function.instruction_id(k)
             if code not in _FROM_CASADI:
                 raise UnknownOperation(function.name(), code)
             op = _FROM_CASADI[code]
             source, sink = function.instruction_input(k), function.instruction_output(k)
-            constant = function.instruction_constant(k) if op is Op.CONST else 0.0
-            if op is Op.INPUT:
+            constant = function.instruction_constant(k) if op is load else 0.0
+            if op is take:
                 rows.append((op, input_start[source[0]] + source[1], 0, sink[0], constant))
-            elif op is Op.OUTPUT:
+            elif op is give:
                 rows.append((op, source[0], 0, output_start[sink[0]] + places[sink[0]][sink[1]], constant))
             else:
                 left, right = (*source, 0, 0)[:2]
@@ -163,13 +164,14 @@ def replay(
     table = {**_SYMBOLIC, **(operations or {})}
     work: list[Any] = [0.0] * program.work_size
     out: list[Any] = [0.0] * program.output_size
-    steps = zip(program.op, program.left, program.right, program.target, program.constant, strict=True)
-    for op, left, right, target, constant in steps:
-        if op == Op.CONST:
-            work[target] = float(constant)
-        elif op == Op.INPUT:
+    load, take, give = int(Op.CONST), int(Op.INPUT), int(Op.OUTPUT)
+    columns = (program.op, program.left, program.right, program.target, program.constant)
+    for op, left, right, target, constant in zip(*(c.tolist() for c in columns), strict=True):
+        if op == load:
+            work[target] = constant
+        elif op == take:
             work[target] = inputs[left]
-        elif op == Op.OUTPUT:
+        elif op == give:
             out[target] = work[left]
         else:
             work[target] = table[Op(op)](work[left], work[right])

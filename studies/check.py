@@ -12,6 +12,7 @@ from studies.load import load_study
 from studies.optimum import FILE, Optimum, optimum_of, read_optimum
 from studies.schema import Study
 
+ROUNDING = 1e-12  # m, of a sum
 AGREE = 1e-6  # relative: what another machine's rounding may change in a figure
 
 
@@ -31,7 +32,7 @@ class Row:
     @property
     def holds(self) -> bool:
         """Whether the claim stands; NaN never does."""
-        return self.margin >= 0.0
+        return bool(self.margin >= 0.0)
 
 
 def check_study(study_file: Path) -> list[Row]:
@@ -52,7 +53,7 @@ def check_study(study_file: Path) -> list[Row]:
         return rows
     problem = setup.problem_of(study)
     rows += _within_bounds(problem, robot)
-    found = optimum_of(pipeline.run(study, robot, lambda _: None))
+    found = optimum_of(pipeline.run(study, robot, lambda _: None, compare_cycles=False))
     return rows + _figures(study, problem, claimed, found) + _cycle(claimed, found)
 
 
@@ -66,14 +67,16 @@ def _within_bounds(problem: Problem, robot: Mechanism) -> list[Row]:
     vector, own = robot.geometry.vector(), problem.robot.geometry.vector()
     places = problem.places()
     for place, bound in zip(places, problem.variables, strict=True):
-        margin = min(vector[place] - bound.low, bound.high - vector[place]) + 1e-12
+        margin = min(vector[place] - bound.low, bound.high - vector[place])
         rows.append(Row(f"geometry.{bound.field}", f"{bound.low:g} to {bound.high:g}", f"{vector[place]:g}", margin))
     fixed = [k for k in range(len(own)) if k not in places]
     off = max((abs(vector[k] - own[k]) for k in fixed), default=0.0)
     rows.append(Row("geometry, other fields", "the study's", f"off by {off:g}", -off))
     for limit in problem.sums:
         total = sum(float(getattr(robot.geometry, field)) for field in limit.fields)
-        rows.append(Row(" + ".join(limit.fields), f"<= {limit.at_most:g}", f"{total:g}", limit.at_most - total + 1e-12))
+        rows.append(
+            Row(" + ".join(limit.fields), f"<= {limit.at_most:g}", f"{total:g}", limit.at_most - total + ROUNDING)
+        )
     return rows
 
 

@@ -17,7 +17,7 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
-    help="Design fast parallel robots, prove the design, and write the set-points that their drives run.",
+    help="Design fast parallel robots, verify the design, and write the set-points that their drives run.",
     epilog="Exit status: 0 all holds, 1 a requirement fails, 2 the input is wrong.",
 )
 

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from rich.console import Console
 from rich.table import Column, Table
 from rich.text import Text
@@ -36,8 +37,7 @@ def progress() -> Iterator[Callable[[str], None]]:
 
 def print_json(data: dict[str, Any]) -> None:
     """One object on standard output; a number that is not finite becomes null, as JSON has none."""
-    json.dump(_plain(data), sys.stdout, indent=2)
-    sys.stdout.write("\n")
+    sys.stdout.write(json.dumps(_plain(data), indent=2) + "\n")
 
 
 def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
@@ -153,6 +153,8 @@ def _pose(pose: Iterable[float]) -> str:
 
 
 def _plain(value: Any) -> Any:
+    if isinstance(value, np.generic):
+        value = value.item()
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, dict):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from studies.optimum import FILE, optimum_of
 from studies.pipeline import Outcome, Timing
-from studies.report import html_report
+from studies.report import html_report, pictures_of
 from trajectory import write_files
 from trajectory.setpoint_file import setpoints_text
 
@@ -18,7 +18,12 @@ def write_outcome(outcome: Outcome, folder: Path, command: str, beside: Path | N
         CannotWrite: the folder cannot be written to.
     """
     optimum = optimum_of(outcome).text()
-    files = {FILE: optimum, "report.html": html_report(outcome, command)}
+    pictures = pictures_of(outcome)
+    files: dict[str, str | bytes] = {
+        FILE: optimum,
+        "report.html": html_report(outcome, pictures, command),
+        "mechanism.png": pictures[0][1],
+    }
     if outcome.timing is not None:
         files |= _setpoints(outcome.timing)
     written = write_files(folder, files)

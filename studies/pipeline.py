@@ -86,6 +86,7 @@ def optimise(study: Study, progress: Progress) -> Synthesis:
         setup.region_of(study),
         seed=study.optimise.seed if study.optimise else 0,
         starts=study.optimise.starts if study.optimise else 1,
+        about=study.dense_sample,
         progress=progress,
     )
 
@@ -100,17 +101,20 @@ def time_cycle(asked: schema.Trajectory, robot: Mechanism) -> Timing:
 
     cycle = there_and_back(robot, path, limits, payload, partial(time_optimal, intervals=asked.grid))
     seconds = time.perf_counter() - started
-    points = cycle_setpoints(cycle, asked.period, robot.joint_units)
+    points = cycle_setpoints(cycle, asked.period, robot.actuator_units)
     approach = None
     if asked.approach is not None:
         approach = plan_approach(
-            robot, points.pose[0], setup.limits_of(asked.approach), payload, asked.period, robot.joint_units
+            robot, points.pose[0], setup.limits_of(asked.approach), payload, asked.period, robot.actuator_units
         )
     return Timing(cycle, points, approach, seconds)
 
 
-def run(study: Study, robot: Mechanism | None, progress: Progress) -> Outcome:
-    """All stages; with a robot given (a committed optimum), its geometry stands and nothing is optimised."""
+def run(study: Study, robot: Mechanism | None, progress: Progress, compare_cycles: bool = True) -> Outcome:
+    """All stages; with a robot given (a committed optimum), its geometry stands and nothing is optimised.
+
+    `compare_cycles` times the prototype's cycle too.
+    """
     problem, region = setup.problem_of(study), setup.region_of(study)
     synthesis: Synthesis | None = None
     before: dict[str, WorstPoses] | None = None
@@ -120,13 +124,13 @@ def run(study: Study, robot: Mechanism | None, progress: Progress) -> Outcome:
     else:
         robot = robot or problem.robot
         progress("worst poses")
-        worst = worst_of(problem, robot, region)
+        worst = worst_of(problem, robot, region, study.dense_sample)
         if robot.geometry != problem.robot.geometry:
-            before = worst_of(problem, problem.robot, region)
+            before = worst_of(problem, problem.robot, region, study.dense_sample)
     timing = prototype_timing = None
     if study.trajectory is not None:
         progress("cycle")
         timing = time_cycle(study.trajectory, robot)
-        if before is not None:
+        if before is not None and compare_cycles:
             prototype_timing = time_cycle(study.trajectory, problem.robot)
     return Outcome(study, problem, region, robot, synthesis, worst, before, timing, prototype_timing)

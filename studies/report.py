@@ -14,6 +14,7 @@ from studies import plots
 from studies.pipeline import Outcome, Timing
 from trajectory.motion import motion_along
 
+Pictures = list[tuple[str, bytes]]  # title and PNG
 _MAPPED = ("fvi", "internal_determinant")
 _TITLES = {
     "fvi": "FVI, worst over the other coordinates",
@@ -21,7 +22,7 @@ _TITLES = {
 }
 
 
-def html_report(outcome: Outcome, command: str) -> str:
+def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
     """The whole report as text; `command` made it."""
     environment = Environment(
         loader=PackageLoader("studies"),
@@ -44,7 +45,7 @@ def html_report(outcome: Outcome, command: str) -> str:
         margins=_margin_rows(outcome),
         sampled=next(iter(outcome.worst.values())).sampled,
         synthesis=outcome.synthesis,
-        pictures=[(title, _embedded(png)) for title, png in _pictures(outcome)],
+        pictures=[(title, _embedded(png)) for title, png in pictures],
         timings=_timing_rows(outcome),
         peaks=_peak_rows(outcome.timing) if outcome.timing else [],
         setpoints=outcome.timing.setpoints if outcome.timing else None,
@@ -105,8 +106,8 @@ def _peak_rows(timing: Timing) -> list[Sequence[str]]:
     return rows
 
 
-def _pictures(outcome: Outcome) -> list[tuple[str, bytes]]:
-    """Title and PNG of each picture."""
+def pictures_of(outcome: Outcome) -> Pictures:
+    """The mechanism, the maps of its margins, the path and the joints' motion."""
     robots = {"result": outcome.robot}
     if outcome.prototype is not None:
         robots = {"prototype": outcome.problem.robot, **robots}
@@ -120,13 +121,13 @@ def _pictures(outcome: Outcome) -> list[tuple[str, bytes]]:
     return pictures + (_motion_pictures(outcome.timing) if outcome.timing else [])
 
 
-def _motion_pictures(timing: Timing) -> list[tuple[str, bytes]]:
+def _motion_pictures(timing: Timing) -> Pictures:
     cycle = timing.cycle
     piece, robot = cycle.pieces[0], cycle.robot
     times = np.linspace(0.0, piece.timed.law.duration, 1501)
     motion = motion_along(robot, piece.path, piece.timed.law.at(times), piece.payload)
     count = len(robot.joint_names)
-    unit = "rad" if set(robot.joint_units) == {"rad"} else "SI"
+    unit = "rad" if set(robot.actuator_units) == {"rad"} else "SI"
     rows: list[tuple[str, Any, Any]] = [
         (f"position [{unit}]", motion.joints.position, None),
         (f"speed [{unit}/s]", motion.joints.first, cycle.limits.of_joints("speed", count)),
@@ -135,7 +136,7 @@ def _motion_pictures(timing: Timing) -> list[tuple[str, bytes]]:
     ]
     return [
         ("Path of the half cycle", plots.path_picture(motion.tool.pose, times, robot.pose_names)),
-        ("Joints on the way there, limits dashed", plots.motion_picture(times, rows, robot.joint_names)),
+        ("Joints on the way there, limits dashed", plots.motion_picture(times, rows, robot.actuator_names)),
     ]
 
 

@@ -187,6 +187,10 @@ class Study(_Model):
     fvi: Annotated[Fvi | None, table_of(Fvi)] = None
     """None takes the mechanism's defaults."""
     optimise: Annotated[Optimise | None, table_of(Optimise)] = None
+    dense_sample: Annotated[int, Field(ge=10_000, le=100_000_000), Key("a whole number from 10000 to 100000000")] = (
+        1_000_000
+    )
+    """About how many poses of the region the worst cases are searched on, before the descents."""
     requirement: Annotated[tuple[Requirement, ...], table_of(Requirement, rows=True)] = ()
     trajectory: Annotated[Trajectory | None, table_of(Trajectory)] = None
 

@@ -99,8 +99,8 @@ class AdeptCycle:
         return Reversed(self)
 
     def as_dict(self) -> dict[str, object]:
-        """The fields."""
-        return asdict(self)
+        """The fields, the pick as a list."""
+        return {**asdict(self), "pick": list(self.pick)}
 
     def evaluate(self, s: Array, order: int = 3) -> tuple[Array, ...]:
         """As `Path.evaluate`."""

@@ -15,7 +15,8 @@ _JOINT_FIELDS = ("speed", "acceleration", "torque", "jerk")
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits, each the same in both directions; None is no limit. A joint limit is one number or one a joint.
+    """Limits, each the same in both directions; None is no limit. A joint limit is one number or one a joint;
+    where drives couple the joints, as the Peppermill's do, it holds at the actuators.
 
     Attributes:
         speed: of the joints [rad/s or m/s].
@@ -67,8 +68,8 @@ class Limits:
         return np.broadcast_to(np.asarray(value, dtype=float), (count,)).copy()
 
     def as_dict(self) -> dict[str, object]:
-        """The limits that are set."""
-        return {name: value for name, value in asdict(self).items() if value is not None}
+        """The limits that are set; a list for one a joint."""
+        return {k: list(v) if isinstance(v, tuple) else v for k, v in asdict(self).items() if v is not None}
 
 
 def _numbers(value: object) -> tuple[float, ...] | None:

@@ -18,7 +18,7 @@ from trajectory.limits import Limits
 from trajectory.motion import motion_along
 from trajectory.path import Path
 from trajectory.timing import TimeLaw
-from trajectory.verification import FRACTIONS, Verification, verify
+from trajectory.verification import Verification, sampling, verify
 
 REPAIRABLE = 1.01  # the largest peak over limit that is repaired
 _POWERS = {
@@ -82,7 +82,7 @@ def _torque_factor(robot: Mechanism, path: Path, law: TimeLaw, limits: Limits, p
     limit = limits.of_joints("torque", len(robot.joint_names))
     if limit is None:
         return 1.0
-    motion = motion_along(robot, path, law.within(FRACTIONS)[1], payload)
+    motion = motion_along(robot, path, law.within(sampling(law))[1], payload)
     rest = np.zeros_like(motion.tool.pose)
     weight = inverse_dynamics(robot, payload, motion.tool.pose, rest, rest)
     static = float((np.abs(weight) / limit).max())

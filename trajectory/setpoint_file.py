@@ -7,6 +7,8 @@ beside its final place and then moved there.
 from __future__ import annotations
 
 import json
+import math
+from collections.abc import Callable
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -19,7 +21,6 @@ from trajectory.path import POSE_NAMES, Array
 from trajectory.setpoints import Setpoints
 
 FORMAT = "linkwright set-points 1"
-_NEEDED = ("period [s]", "periods", "joints", "units")
 _ROUNDING = 1e-9  # of the period
 
 
@@ -28,6 +29,7 @@ def write_setpoints(file: FilePath | str, setpoints: Setpoints) -> None:
 
     Raises:
         InvalidValue: a set-point is not finite.
+        ValueError: the header holds a number that is not finite.
         CannotWrite: the folder cannot be written to.
     """
     file = FilePath(file)
@@ -39,13 +41,14 @@ def setpoints_text(setpoints: Setpoints) -> str:
 
     Raises:
         InvalidValue: a set-point is not finite.
+        ValueError: the header holds a number that is not finite.
     """
     table = setpoints.table()
     if not np.isfinite(table).all():
         row, column = (int(k) for k in np.argwhere(~np.isfinite(table))[0])
         raise InvalidValue(f"set-point {row}, {setpoints.columns[column]}", table[row, column], "a finite number")
     header = {**setpoints.header, "joints": list(setpoints.joint_names), "units": list(setpoints.units)}
-    lines = [f"# {FORMAT}", *(f"# {name}: {json.dumps(value)}" for name, value in header.items())]
+    lines = [f"# {FORMAT}", *(f"# {name}: {json.dumps(value, allow_nan=False)}" for name, value in header.items())]
     lines.append(",".join(setpoints.columns))
     lines.extend(",".join(map(repr, row)) for row in table.tolist())
     return "\n".join(lines) + "\n"
@@ -58,7 +61,10 @@ def read_setpoints(file: FilePath | str) -> Setpoints:
         SetpointFileError: naming the line, what was found and what was expected.
     """
     file = FilePath(file)
-    lines = file.read_text(encoding="utf-8").splitlines()
+    try:
+        lines = file.read_text(encoding="utf-8").splitlines()
+    except UnicodeDecodeError as error:
+        raise SetpointFileError(file, 1, str(error), "UTF-8 text") from error
     first = lines[0] if lines else "an empty file"
     if first != f"# {FORMAT}":
         raise SetpointFileError(file, 1, first, f"# {FORMAT}")
@@ -66,12 +72,18 @@ def read_setpoints(file: FilePath | str) -> Setpoints:
     names, units = header.pop("joints"), header.pop("units")
     above = len(header) + 3  # the format's line, joints and units
     joint_units = units[1 + len(POSE_NAMES) :][: len(names)]
-    columns = Setpoints.of_table(np.zeros((0, 5 + 4 * len(names))), names, joint_units, header).columns
-    if len(lines) <= above or lines[above] != ",".join(columns):
-        raise SetpointFileError(
-            file, above + 1, "other columns" if len(lines) > above else "the end", ",".join(columns)
-        )
-    table = np.array([_read_row(file, above + 2 + k, line, len(columns)) for k, line in enumerate(lines[above + 1 :])])
+    try:
+        empty = Setpoints.of_table(np.zeros((0, 5 + 4 * len(names))), names, joint_units, header)
+    except InvalidValue as error:
+        raise SetpointFileError(file, above, f"units {units}", error.expected) from error
+    if units != list(empty.units):
+        raise SetpointFileError(file, above, f"units {units}", str(list(empty.units)))
+    found = lines[above] if len(lines) > above else "the end of the file"
+    if found != ",".join(empty.columns):
+        raise SetpointFileError(file, above + 1, found, ",".join(empty.columns))
+    table = np.array(
+        [_read_row(file, above + 2 + k, line, len(empty.columns)) for k, line in enumerate(lines[above + 1 :])]
+    )
     _require_periods(file, above + 2, table, header)
     return Setpoints.of_table(table, names, joint_units, header)
 
@@ -88,10 +100,22 @@ def _read_header(file: FilePath, lines: list[str]) -> dict[str, Any]:
             header[name] = json.loads(value)
         except json.JSONDecodeError as error:
             raise SetpointFileError(file, number, value, f"a JSON value ({error.msg})") from error
-    missing = [name for name in _NEEDED if name not in header]
-    if missing:
-        raise SetpointFileError(file, 1, f"a header without {', '.join(missing)}", "all of the writer's lines")
+    for name, (right, what) in _NEEDED.items():
+        if name not in header or not right(header[name]):
+            raise SetpointFileError(file, 1, f"{name}: {header.get(name)} in the header", what)
     return header
+
+
+def _are(kind: type, values: object) -> bool:
+    return isinstance(values, list) and bool(values) and all(type(v) is kind for v in values)
+
+
+_NEEDED: dict[str, tuple[Callable[[Any], bool], str]] = {
+    "period [s]": (lambda v: type(v) is float and 0.0 < v < math.inf, "a finite time > 0"),
+    "periods": (lambda v: _are(int, v) and min(v) > 0, "counts > 0"),
+    "joints": (lambda v: _are(str, v), "names"),
+    "units": (lambda v: _are(str, v), "units"),
+}
 
 
 def _read_row(file: FilePath, number: int, line: str, count: int) -> list[float]:

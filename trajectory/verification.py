@@ -1,8 +1,9 @@
 """Independent verification of a timed path: densely in time, between the gridpoints and on both sides of each knot.
 
 Nothing here uses the coefficients from which a law was made: the pose and its time derivatives come from the path and
-the law, the joints from the inverse model's derivatives, the torque from inverse dynamics. Peaks are sampled, at ten
-equal parts of each interval; they are measured, not proven.
+the law, the joints from the inverse model's derivatives, the torque from inverse dynamics. The joints' speed must also
+be the integral of their acceleration, and their position that of their speed: so a cusp between samples, where every
+sample looks innocent, and derivatives that are not the path's are found. Peaks are sampled: measured, not proven.
 """
 
 from __future__ import annotations
@@ -14,22 +15,24 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics import InvalidValue, Mechanism
+from kinematics.drives import from_actuators
 from trajectory.limits import Limits
 from trajectory.motion import Motion, motion_along
 from trajectory.path import Array, Path, require_schoenflies
 from trajectory.timing import TimeLaw
 
-PARTS = 10  # of each interval of the law
-FRACTIONS = np.linspace(0.0, 1.0, PARTS + 1)
-_SIMPSON = np.array([1, 4, 2, 4, 2, 4, 2, 4, 2, 4, 1]) / (3 * PARTS)
+LEAST_PARTS = 10  # of each interval of the law
+LEAST_STEPS = 10_000  # of the whole path, about
 _SMOOTH = 1e-9  # of the largest s'': a smaller jump is rounding
-_TOLERANCES = {  # SI; the closure is in m^2
+_TOLERANCES = {  # SI, the closure in m^2; the two integrals are relative
     "start pose": 1e-9,
     "end pose": 1e-9,
     "start speed": 1e-9,
     "end speed": 1e-9,
     "closure": 1e-9,
     "forward": 1e-6,
+    "integral of acceleration": 1e-4,
+    "integral of speed": 1e-6,
 }
 
 
@@ -56,7 +59,8 @@ class Verification:
         law: name of the law.
         duration: of the motion [s].
         peaks: of joint speed, joint acceleration, torque, joint jerk, tool speed, tool acceleration.
-        residuals: of end poses, end speeds, loop closure and forward model, SI.
+        residuals: of end poses, end speeds, loop closure and forward model, SI; of the joints' integrals, over the
+            largest speed and over the way of the joints.
         reach: the worst limb's margin [m]; negative or NaN fails.
         rms_torque: (m,) over the whole duration [N m or N].
         rms_over_peak: (m,) each joint's RMS torque over its own peak.
@@ -122,16 +126,15 @@ def verify(robot: Mechanism, path: Path, law: TimeLaw, limits: Limits, payload: 
     ends = (law.position[0], law.position[-1])
     if not np.allclose(ends, (0.0, path.length), rtol=0.0, atol=1e-9 * path.length):
         raise InvalidValue("arc length of the time law", ends, f"(0, {path.length:.9g}) m, the path's")
-    times, along = law.within(FRACTIONS)
+    times, along = law.within(sampling(law))
     motion = motion_along(robot, path, along, payload)
     peaks, notes = _peaks(robot, law, times, motion, limits)
-    mean_square = (motion.torque**2 * _SIMPSON[:, None]).sum(axis=1)
-    rms = np.sqrt((mean_square * np.diff(law.times)[:, None]).sum(axis=0) / law.duration)
+    rms = np.sqrt(_integrals(law, motion.torque**2).sum(axis=0) / law.duration)
     return Verification(
         law=law.name,
         duration=law.duration,
         peaks=peaks,
-        residuals=_residuals(robot, path, motion),
+        residuals=_residuals(robot, path, motion) | _integral_residuals(law, motion),
         reach=_least(robot.margin("reach", motion.tool.pose)),
         rms_torque=rms,
         rms_over_peak=rms / np.abs(motion.torque).max(axis=(0, 1)),
@@ -139,10 +142,17 @@ def verify(robot: Mechanism, path: Path, law: TimeLaw, limits: Limits, payload: 
     )
 
 
+def sampling(law: TimeLaw) -> Array:
+    """(k,) fractions of each interval: at least ten parts, and a step at most about 1 / `LEAST_STEPS` of the path."""
+    share = np.diff(law.position).max() / np.ptp(law.position)
+    parts = LEAST_PARTS * max(1, math.ceil(LEAST_STEPS / LEAST_PARTS * share))
+    return np.linspace(0.0, 1.0, parts + 1)
+
+
 def _peaks(
     robot: Mechanism, law: TimeLaw, times: Array, motion: Motion, limits: Limits
 ) -> tuple[tuple[Peak, ...], tuple[str, ...]]:
-    names = robot.joint_names
+    names = robot.actuator_names
 
     def of_joints(quantity: str, values: Array, field: str) -> Peak:
         limit = limits.of_joints(field, len(names))
@@ -175,7 +185,7 @@ def _peaks(
 
 
 def _residuals(robot: Mechanism, path: Path, motion: Motion) -> dict[str, float]:
-    pose, joints = motion.tool.pose, motion.joints.position
+    pose, joints = motion.tool.pose, from_actuators(robot, motion.joints.position)
     knots, knot_joints = pose[:, 0], joints[:, 0]
     by_forward = robot.forward(knot_joints) - knots
     turns = list(robot.rotations)
@@ -189,6 +199,26 @@ def _residuals(robot: Mechanism, path: Path, motion: Motion) -> dict[str, float]
         "closure": _largest(robot.closure_residual(pose, joints)),
         "forward": _largest(by_forward),
     }
+
+
+def _integral_residuals(law: TimeLaw, motion: Motion) -> dict[str, float]:
+    """What the joints' derivatives, integrated from the start, do not explain; a cusp at speed v leaves about 2 v."""
+    joints = motion.joints
+    jump = joints.first[:, -1] - joints.first[0, 0] - _integrals(law, joints.second).cumsum(axis=0)
+    gap = joints.position[:, -1] - joints.position[0, 0] - _integrals(law, joints.first).cumsum(axis=0)
+    return {
+        "integral of acceleration": _largest(jump) / _largest(joints.first),
+        "integral of speed": _largest(gap) / float(np.ptp(joints.position, axis=(0, 1)).max()),
+    }
+
+
+def _integrals(law: TimeLaw, values: Array) -> Array:
+    """(n, k, m) values at equal parts of each interval -> (n, m) integrals over time, by Simpson's rule."""
+    parts = values.shape[1] - 1
+    weights = np.full(parts + 1, 2.0)
+    weights[1::2] = 4.0
+    weights[[0, -1]] = 1.0
+    return np.einsum("nkm,k,n->nm", values, weights / (3 * parts), np.diff(law.times))
 
 
 def _largest(values: Array) -> float:

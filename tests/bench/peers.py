@@ -1,0 +1,68 @@
+"""Heli4 in plain batched numpy, by hand from the paper: what a careful engineer would write without Linkwright."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinematics import Heli4
+
+Array = np.ndarray
+UPPER = np.array([0.0, 0.0, 1.0, 1.0])
+
+
+def platform_points(g: Heli4.Geometry, pose: Array) -> Array:
+    """(k, 4, 3) B_i."""
+    radial = np.stack([np.cos(g.azimuths), np.sin(g.azimuths), np.zeros(4)], axis=-1)
+    heights = g.plate_offset + UPPER * (g.height_step + g.pitch / (2 * np.pi) * pose[:, 3:4])
+    points = pose[:, None, :3] + g.platform_radius * radial
+    points[..., 2] += heights
+    return points
+
+
+def actuators(g: Heli4.Geometry) -> tuple[Array, Array]:
+    """(4, 3) P_i and (4, 3) u_i."""
+    radial = np.stack([np.cos(g.azimuths), np.sin(g.azimuths), np.zeros(4)], axis=-1)
+    points = g.base_radius * radial
+    points[:, 2] += g.height_step * UPPER
+    return points, radial
+
+
+def inverse(g: Heli4.Geometry, pose: Array) -> Array:
+    """(k, 4) -> (k, 4)."""
+    base, radial = actuators(g)
+    away = base - platform_points(g, pose)
+    m, n = 2 * g.arm_length * away[..., 2], 2 * g.arm_length * (away * radial).sum(axis=-1)
+    right = g.rod_length**2 - (away**2).sum(axis=-1) - g.arm_length**2
+    return np.arctan2(n, m) + np.arctan2(np.sqrt(m**2 + n**2 - right**2), right)
+
+
+def fvi(g: Heli4.Geometry, pose: Array, speed: float, effort: float, v: float, f: float, length: float) -> Array:
+    """(k,) by the pseudo-inverse of the homogeneous inverse Jacobian."""
+    q = inverse(g, pose)
+    base, radial = actuators(g)
+    along = np.sin(q)[..., None] * radial + np.cos(q)[..., None] * np.array([0, 0, 1.0])
+    tangent = np.cos(q)[..., None] * radial - np.sin(q)[..., None] * np.array([0, 0, 1.0])
+    rods = base + g.arm_length * along - platform_points(g, pose)
+    j_x = np.concatenate([rods, (UPPER * g.pitch / (2 * np.pi) * rods[..., 2])[..., None]], axis=-1)
+    j_m = j_x / (g.arm_length * (rods * tangent).sum(axis=-1))[..., None]
+    j_m[..., 3] /= length
+    velocity = 1 / np.linalg.norm(j_m, axis=-1).max(axis=-1)
+    force = 1 / np.linalg.norm(np.linalg.pinv(j_m), axis=-2).max(axis=-1)
+    return np.minimum(velocity * speed / v, force * effort / f)
+
+
+def forward(g: Heli4.Geometry, q: Array) -> Array:
+    """(k, 4) -> (k, 4) by Newton's method on the four closures from home, a 4 x 4 solve a step."""
+    base, radial = actuators(g)
+    along = np.sin(q)[..., None] * radial + np.cos(q)[..., None] * np.array([0, 0, 1.0])
+    arms = base + g.arm_length * along
+    pose = np.tile([0.0, 0.0, -0.7, 0.0], (len(q), 1))
+    for _ in range(60):
+        rods = platform_points(g, pose) - arms
+        residual = ((rods**2).sum(axis=-1) - g.rod_length**2) / 2
+        jacobian = np.concatenate([rods, (UPPER * g.pitch / (2 * np.pi) * rods[..., 2])[..., None]], axis=-1)
+        step = np.linalg.solve(jacobian, residual[..., None])[..., 0]
+        pose -= step
+        if np.abs(step).max() < 1e-13:
+            break
+    return pose

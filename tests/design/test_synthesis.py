@@ -1,0 +1,129 @@
+"""The synthesis finds an optimum that stands everywhere, or says why there is none."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+from design import Bounds, Cylinder, Requirement, SumLimit, SynthesisFailed, worst_poses
+from design.nlp import Problem, solve
+from design.synthesis import synthesise
+from kinematics import Heli4
+
+REGION = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-math.pi, math.pi))
+ROBOT = Heli4()
+ABOUT = 60_000
+
+
+def problem(
+    *variables: tuple[str, float, float], requirements: tuple[Requirement, ...] = (), **others: object
+) -> Problem:
+    return Problem(
+        robot=ROBOT,
+        objective="fvi",
+        variables=tuple(Bounds(name, 0, low, high) for name, low, high in variables),
+        requirements=requirements,
+        sums=others.pop("sums", ()),  # type: ignore[arg-type]
+        fvi_bounds=ROBOT.fvi_bounds,
+        characteristic_length=ROBOT.characteristic_length,
+        **others,  # type: ignore[arg-type]
+    )
+
+
+def test_one_variable_agrees_with_a_golden_section_over_dense_searches() -> None:
+    asked = problem(("arm_length", 0.30, 0.42))
+
+    def worst(arm: float) -> float:
+        return -worst_poses(Heli4(replace(ROBOT.geometry, arm_length=arm)), REGION, "fvi", about=ABOUT).value
+
+    oracle = minimize_scalar(worst, bounds=(0.30, 0.42), method="bounded", options={"xatol": 1e-5})
+    found = synthesise(asked, REGION, starts=1, about=ABOUT)
+    assert found.after["fvi"].value == pytest.approx(-oracle.fun, rel=2e-4)
+    assert found.robot.geometry.arm_length == pytest.approx(oracle.x, abs=2e-4)
+
+
+def test_an_optimum_from_a_coarse_sample_collapses_and_the_exchange_mends_it() -> None:
+    found = synthesise(problem(("base_radius", 0.2, 0.45), ("rod_length", 0.7, 0.9)), REGION, starts=1, about=ABOUT)
+    first, last = found.rounds[0], found.rounds[-1]
+    assert first.found < first.promised * 0.97
+    assert last.found >= last.promised * (1 - 1e-4)
+    assert last.poses > first.poses
+
+
+def test_requirements_hold_between_the_poses_that_were_solved_on() -> None:
+    requirements = (Requirement("J_q", 0.5), Requirement("internal_determinant", 0.5))
+    found = synthesise(
+        problem(("base_radius", 0.2, 0.45), ("platform_radius", 0.03, 0.08), requirements=requirements),
+        REGION,
+        starts=1,
+        about=ABOUT,
+    )
+    for requirement in requirements:
+        denser = worst_poses(found.robot, REGION, requirement.margin, about=500_000)
+        assert denser.value >= requirement.at_least
+
+
+def test_what_holds_the_optimum_back_is_named() -> None:
+    found = synthesise(
+        problem(("platform_radius", 0.03, 0.08), requirements=(Requirement("internal_determinant", 0.4),)),
+        REGION,
+        starts=1,
+        about=ABOUT,
+    )
+    at_bound = abs(found.robot.geometry.platform_radius - 0.08) < 1e-6
+    at_requirement = found.after["internal_determinant"].value < 0.401
+    assert ("platform_radius at its upper bound 0.08" in found.active) == at_bound
+    assert ("internal_determinant at its lower bound 0.4" in found.active) == at_requirement
+    assert found.active
+
+
+def test_the_azimuths_can_be_variables() -> None:
+    azimuths = ROBOT.geometry.azimuths
+    variables = tuple(Bounds("azimuths", k, azimuths[k] - 0.3, azimuths[k] + 0.3) for k in (2, 3))
+    found = synthesise(replace(problem(), variables=variables), REGION, starts=1, about=ABOUT)
+    assert found.after["fvi"].value >= found.before["fvi"].value * (1 - 1e-5)
+    assert found.robot.geometry.azimuths[:2] == azimuths[:2]
+
+
+def test_an_impossible_requirement_fails_by_its_name() -> None:
+    with pytest.raises(SynthesisFailed, match=r"internal_determinant >= 0\.99 falls short") as error:
+        synthesise(
+            problem(("pitch", 0.02, 0.12), requirements=(Requirement("internal_determinant", 0.99),)),
+            REGION,
+            starts=1,
+            about=ABOUT,
+        )
+    assert error.value.exit_status == 1
+
+
+def test_an_impossible_sum_fails_by_its_name() -> None:
+    sums = (SumLimit(("arm_length", "rod_length"), 0.5),)
+    with pytest.raises(SynthesisFailed, match=r"arm_length \+ rod_length <= 0\.5"):
+        synthesise(problem(("arm_length", 0.25, 0.5), sums=sums), REGION, starts=1, about=ABOUT)
+
+
+def test_too_few_rounds_are_a_failure_and_not_an_answer() -> None:
+    with pytest.raises(SynthesisFailed, match="did not settle"):
+        synthesise(
+            problem(("base_radius", 0.2, 0.45), ("rod_length", 0.7, 0.9)), REGION, starts=1, about=ABOUT, max_rounds=1
+        )
+
+
+def test_the_same_seed_gives_the_same_geometry() -> None:
+    asked = problem(("base_radius", 0.2, 0.45), ("arm_length", 0.25, 0.5))
+    first, second = (synthesise(asked, REGION, seed=5, starts=2, about=ABOUT) for _ in range(2))
+    assert first.robot.geometry == second.robot.geometry
+
+
+def test_the_characteristic_length_stays_the_prototypes_while_the_pitch_varies() -> None:
+    """Else a longer pitch would count as a better robot without moving the tool any faster."""
+    asked = problem(("pitch", 0.02, 0.12))
+    assert asked.characteristic_length == pytest.approx(0.05 / (2 * math.pi))
+    solution = solve(asked, REGION.corners(ROBOT.pose_names), np.array([0.05]))
+    robot = Heli4(replace(ROBOT.geometry, pitch=float(solution.values[0])))
+    own = robot.fvi(REGION.corners(ROBOT.pose_names), characteristic_length=asked.characteristic_length).min()
+    assert solution.objective == pytest.approx(own, rel=1e-6)
