@@ -56,7 +56,7 @@ def _torques(robot: Mechanism, model: Model, payload: float, rates: list[ca.SX])
     on_joints = model.at_pose(_generalised_force(bodies.of_joints, model.joints, joint_rates))
     along = derivatives_along(model.inverse, model.pose, rates)[1:]
     on_joints = ca.substitute(on_joints, ca.vertcat(*joint_rates), ca.vertcat(*along))
-    on_pose = _generalised_force(bodies.of_pose, model.pose, rates)
+    on_pose = robot.pose_rate_map(model.pose).T @ _generalised_force(bodies.of_pose, model.pose, rates)
     if model.joints.shape[0] > model.pose.shape[0]:
         j_m = model.inverse_jacobian
         cofactors, det = adjugate(j_m.T @ j_m)

@@ -46,6 +46,7 @@ class Mechanism(ABC):
     joint_names: ClassVar[tuple[str, ...]]
     joint_units: ClassVar[tuple[str, ...]]  # rad or m
     rotations: ClassVar[tuple[int, ...]]  # which pose coordinates are angles
+    counts_turns: ClassVar[bool] = False  # whether an angle a turn on is another pose, as on a screw
     home: ClassVar[tuple[float, ...]]  # a pose well inside the workspace
     fvi_bounds: ClassVar[FviBounds]
     margins: ClassVar[tuple[str, ...]] = ("reach", "fvi", "J_q", "det_J_q", "det_J_x")
@@ -106,6 +107,11 @@ class Mechanism(ABC):
     def pose_rate_map(pose: ca.SX) -> ca.SX:
         """(n, n) pose rates from the twist; the identity unless the pose holds Euler angles."""
         return ca.SX.eye(pose.shape[0])
+
+    @classmethod
+    def closure_by_twist(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(m, n) derivative of the closure by the twist; to be replaced where Euler angles would spoil it."""
+        return ca.jacobian(cls.closure(pose, joints, g), pose) @ cls.pose_rate_map(pose)
 
     @property
     def actuator_names(self) -> tuple[str, ...]:

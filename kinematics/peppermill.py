@@ -95,6 +95,7 @@ class Peppermill(Mechanism):
     joint_names = ("d1", "d2", "theta1", "theta2")
     joint_units = ("m", "m", "rad", "rad")
     rotations = (3,)
+    counts_turns = True
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.0, 0.0)
     # 750 W servos at 3000 rpm and three times their rated torque, asked for 2.5 m/s and 50 N: our assumption.
     fvi_bounds = FviBounds(joint_speed=314.0, joint_effort=7.2, speed=2.5, force=50.0)

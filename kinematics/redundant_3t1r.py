@@ -66,6 +66,7 @@ class Redundant3T1R(RodLevel):
     inertia: Redundant3T1RInertia
     pose_names = ("x", "y", "z", "theta")
     joint_names = ("x1", "x2", "x3", "x4", "x5", "x6")
+    joint_units = ("m",) * _LIMBS
     rotations = (3,)
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.0, 0.0)
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=1.0, speed=0.5, force=0.5)

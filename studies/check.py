@@ -70,7 +70,7 @@ def _within_bounds(problem: Problem, robot: Mechanism) -> list[Row]:
         margin = min(vector[place] - bound.low, bound.high - vector[place])
         rows.append(Row(f"geometry.{bound.field}", f"{bound.low:g} to {bound.high:g}", f"{vector[place]:g}", margin))
     fixed = [k for k in range(len(own)) if k not in places]
-    off = max((abs(vector[k] - own[k]) for k in fixed), default=0.0)
+    off = max((abs(vector[k] - own[k]) for k in fixed if vector[k] != own[k]), default=0.0)
     rows.append(Row("geometry, other fields", "the study's", f"off by {off:g}", -off))
     for limit in problem.sums:
         total = sum(float(getattr(robot.geometry, field)) for field in limit.fields)

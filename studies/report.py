@@ -144,6 +144,8 @@ def _embedded(png: bytes) -> str:
     return "data:image/png;base64," + base64.b64encode(png).decode()
 
 
-def _numbers(value: float | tuple[float, ...]) -> str:
-    values = value if isinstance(value, tuple) else (value,)
-    return ", ".join(f"{v:.6g}" for v in values)
+def _numbers(value: Any) -> str:
+    """A number, a row, or rows apart by semicolons."""
+    if not isinstance(value, tuple):
+        return f"{value:.6g}"
+    return ("; " if isinstance(value[0], tuple) else ", ").join(_numbers(v) for v in value)
