@@ -115,7 +115,8 @@ def pictures_of(outcome: Outcome) -> Pictures:
         robots = {"prototype": outcome.problem.robot, **robots}
     pictures = [("Mechanism at home, with the workspace's edge", plots.mechanism_picture(robots, outcome.region))]
     bounds = {r.margin: r.at_least for r in outcome.problem.requirements} | {outcome.problem.objective: 1.0}
-    for margin in (m for m in _MAPPED if m in outcome.robot.margins):
+    mapped = _MAPPED if plots.can_be_mapped(outcome.region, outcome.robot.pose_names) else ()
+    for margin in (m for m in mapped if m in outcome.robot.margins):
         sections = {
             label: plots.section_of(outcome.problem, robot, outcome.region, margin) for label, robot in robots.items()
         }
