@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import Bodies
+from kinematics.bodies import Bodies, require_masses
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.geometry import GeometryRecord
 from kinematics.indices import (
@@ -53,7 +53,9 @@ class Mechanism(ABC):
 
     def __init__(self, geometry: GeometryRecord | None = None, inertia: Any = None) -> None:
         self.geometry = geometry if geometry is not None else self.Geometry()
-        self.inertia = inertia if inertia is not None else self.Inertia()
+        if not isinstance(self.geometry, self.Geometry):
+            raise InvalidValue(f"{type(self).__name__} geometry", geometry, f"a {self.Geometry.__name__}")
+        self.inertia = require_masses(inertia if inertia is not None else self.Inertia())
         self._programs: dict[object, Program] = {}
 
     def __repr__(self) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from studies import plots
+from studies.check import shown_pose
 from studies.pipeline import Outcome, Timing
 from trajectory.motion import motion_along
 
@@ -45,6 +46,9 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
         margins=_margin_rows(outcome),
         sampled=next(iter(outcome.worst.values())).sampled,
         synthesis=outcome.synthesis,
+        active=outcome.active,
+        on_cycle=outcome.on_cycle,
+        pose_names=", ".join(outcome.robot.pose_names),
         pictures=[(title, _embedded(png)) for title, png in pictures],
         timings=_timing_rows(outcome),
         peaks=_peak_rows(outcome.timing) if outcome.timing else [],
@@ -72,9 +76,7 @@ def _margin_rows(outcome: Outcome) -> list[tuple[str, str, str, str, str]]:
             wanted.get(margin, ""),
             f"{outcome.prototype[margin].value:.6f}" if outcome.prototype else "",
             f"{worst.value:.6f}",
-            ", ".join(
-                f"{n} {round(v, 6) + 0.0:.4g}" for n, v in zip(outcome.robot.pose_names, worst.pose, strict=True)
-            ),
+            shown_pose(worst.pose),
         )
         for margin, worst in outcome.worst.items()
     ]
