@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ import numpy as np
 from design import Region
 from design.nlp import Problem
 from kinematics import Mechanism
-from studies import pipeline, setup
+from studies import pipeline
 from studies.load import load_study
 from studies.optimum import FILE, GIVEN, Optimum, optimum_of, read_optimum
 from studies.schema import Study
@@ -50,19 +50,29 @@ def check_study(study_file: Path) -> list[Row]:
     """
     study = load_study(study_file)
     claimed = read_optimum(study_file.parent / FILE)
-    made_for = str(claimed.data["made_by"].get("study_digest"))
-    rows = [_same("made for this study.toml, unchanged", made_for[:12], study.digest[:12])]
-    if not rows[0].holds:
-        return rows  # an answer to another question
-    robot, problem, region = claimed.robot(study), setup.problem_of(study), setup.region_of(study)
-    outcome = pipeline.run(study, robot, lambda _: None, compare_cycles=False)
+    made_for = _made_for(study, claimed)
+    if not made_for.holds:
+        return [made_for]  # an answer to another question
+    outcome = pipeline.run(study, claimed.robot(study), lambda _: None, compare_cycles=False)
+    return compare(claimed, outcome)
+
+
+def compare(claimed: Optimum, outcome: pipeline.Outcome) -> list[Row]:
+    """Every claim of a file against what its geometry was found to do."""
+    study, problem, robot = outcome.study, outcome.problem, outcome.robot
     return [
-        *rows,
+        _made_for(study, claimed),
         *_within_bounds(problem, robot),
         *_requirements(study, outcome),
-        *_at_claimed_poses(claimed, problem, robot, region),
+        *_at_claimed_poses(claimed, problem, robot, outcome.region),
         *_entries(claimed, optimum_of(outcome), study),
     ]
+
+
+def _made_for(study: Study, claimed: Optimum) -> Row:
+    digest = str(claimed.data["made_by"].get("study_digest"))
+    row = _same("made for this study.toml, unchanged", digest, study.digest)
+    return replace(row, expected=digest[:12], found=study.digest[:12])
 
 
 def _same(what: str, claimed: object, found: object) -> Row:

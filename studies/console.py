@@ -53,7 +53,7 @@ def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]
     )
     for row in rows:
         table.add_row(*(Text(str(cell)) for cell in row))
-    width = None if console.is_terminal else max(console.width, 160)
+    width = None if console.is_terminal else max(console.width, 240)
     Console(width=width).print(table, soft_wrap=not console.is_terminal)
     Console().print()
 
