@@ -19,7 +19,7 @@ Pictures = list[tuple[str, bytes]]  # title and PNG
 _MAPPED = ("fvi", "internal_determinant")
 _TITLES = {
     "fvi": "FVI, worst over the other coordinates",
-    "internal_determinant": "Internal determinant (Heli4: |expression (59)| over d^4 l^4), worst over the other coordinates",
+    "internal_determinant": "Internal determinant (Heli4: |(59)| over d^4 l^4), worst over the other coordinates",
 }
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from kinematics import Mechanism
+from kinematics.definition import Definition
 from kinematics.dynamics import inverse_dynamics
 from kinematics.rods import RodLevel
 
@@ -27,7 +28,7 @@ def poses():
 
 
 def test_the_page_names_every_hook():
-    hooks = {name for name in (*Mechanism.__abstractmethods__, *Mechanism.__annotations__) if name != "margins"}
+    hooks = {name for name in (*Mechanism.__abstractmethods__, *Definition.__annotations__) if name != "margins"}
     optional = {
         "drives",
         "actuator_names",
