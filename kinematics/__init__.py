@@ -1,20 +1,26 @@
 """Mechanisms as loop closures, and all that follows from them."""
 
 from kinematics.errors import InvalidGeometry, InvalidShape, InvalidValue, LinkwrightError, UnreachablePose
+from kinematics.gough_stewart import GoughStewart
+from kinematics.gough_stewart_geometry import SingularArchitecture
+from kinematics.gough_stewart_modes import LostPaths
 from kinematics.heli4 import Heli4
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Mechanism
 
-MECHANISMS: dict[str, type[Mechanism]] = {cls.__name__: cls for cls in (Heli4,)}
+MECHANISMS: dict[str, type[Mechanism]] = {cls.__name__: cls for cls in (Heli4, GoughStewart)}
 
 __all__ = [
     "MECHANISMS",
     "FviBounds",
+    "GoughStewart",
     "Heli4",
     "InvalidGeometry",
     "InvalidShape",
     "InvalidValue",
     "LinkwrightError",
+    "LostPaths",
     "Mechanism",
+    "SingularArchitecture",
     "UnreachablePose",
 ]

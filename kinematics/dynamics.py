@@ -48,7 +48,7 @@ def _torques(robot: Mechanism, model: Model, payload: float, rates: list[ca.SX])
     on_joints = model.at_pose(_generalised_force(bodies.of_joints, model.joints, joint_rates))
     along = derivatives_along(model.inverse, model.pose, rates)[1:]
     on_joints = ca.substitute(on_joints, ca.vertcat(*joint_rates), ca.vertcat(*along))
-    on_pose = _generalised_force(bodies.of_pose, model.pose, rates)
+    on_pose = robot.pose_rate_map(model.pose).T @ _generalised_force(bodies.of_pose, model.pose, rates)
     # J_q^-T sits outside the solve, so that a limb near its reach does not spoil the others.
     transposed, det = adjugate(model.j_x_at_pose.T)
     return on_joints + model.j_q_at_pose * (transposed @ on_pose) / det

@@ -15,12 +15,16 @@ import numpy as np
 from kinematics.errors import InvalidGeometry
 
 Vector = np.ndarray
+Points = tuple[tuple[float, ...], ...]  # rows of numbers
 TURN = 2.0 * math.pi
 
 
-def length(default: float | tuple[float, ...], *, minimum: float | None = 0.0, doc: str) -> Any:
-    """A length in metres, greater than `minimum` (None: any sign)."""
-    return field(default=default, metadata={"dimension": "length", "minimum": minimum, "doc": doc})
+def length(
+    default: float | tuple[float, ...] | Points, *, minimum: float | None = 0.0, bounded: bool = True, doc: str
+) -> Any:
+    """A length in metres, greater than `minimum` (None: any sign); infinite only where not `bounded`."""
+    metadata = {"dimension": "length", "minimum": minimum, "bounded": bounded, "doc": doc}
+    return field(default=default, metadata=metadata)
 
 
 def angle(default: float | tuple[float, ...], *, doc: str) -> Any:
@@ -33,9 +37,17 @@ def screw_pitch(default: float | tuple[float, ...], *, doc: str) -> Any:
     return field(default=default, metadata={"dimension": "length_per_turn", "minimum": None, "doc": doc})
 
 
+def frame(*, doc: str) -> Any:
+    """A homogeneous transform (4, 4), rotation without unit and translation in metres; the identity by default."""
+    identity = tuple(tuple(float(i == j) for j in range(4)) for i in range(4))
+    return field(default=identity, metadata={"dimension": "frame", "minimum": None, "doc": doc})
+
+
 @dataclass(frozen=True)
 class GeometryRecord:
-    """Base of every mechanism's `Geometry`: a flat list of named numbers (or tuples of numbers).
+    """Base of every mechanism's `Geometry`: named numbers, tuples of numbers, or tuples of rows of numbers.
+
+    In a vector, a field of rows lies row by row.
 
     Raises:
         InvalidGeometry: a value is not finite, has the wrong number of items, or is not a possible length.
@@ -44,17 +56,18 @@ class GeometryRecord:
     def __post_init__(self) -> None:
         for f in fields(self):
             given, wanted = getattr(self, f.name), _shape(f)
+            words = " rows of ".join(str(k) for k in wanted) + " numbers" if wanted else "a number"
             array = _numbers(given)
             if array is None or array.shape != wanted:
-                raise self._invalid(f.name, given, "a number" if wanted == () else f"{wanted[0]} numbers")
-            if not np.all(np.isfinite(array)):
+                raise self._invalid(f.name, given, words)
+            if np.any(np.isnan(array)) or (f.metadata.get("bounded", True) and np.any(np.isinf(array))):
                 raise self._invalid(f.name, given, "finite values")
             minimum = f.metadata["minimum"]
             if minimum is not None and np.any(array <= minimum):
                 raise self._invalid(f.name, given, f"a length > {minimum:g} m")
             if f.metadata["dimension"] == "length_per_turn" and np.any(array == 0.0):
                 raise self._invalid(f.name, given, "a pitch other than 0 m/turn")
-            object.__setattr__(self, f.name, float(array) if wanted == () else tuple(array.tolist()))
+            object.__setattr__(self, f.name, _frozen(array))
 
     @classmethod
     def _invalid(cls, name: str, found: object, expected: str) -> InvalidGeometry:
@@ -73,7 +86,7 @@ class GeometryRecord:
 
     def vector(self) -> Vector:
         """(k,) all numbers, in the order of `symbols`."""
-        return np.concatenate([np.atleast_1d(np.asarray(getattr(self, f.name), float)) for f in fields(self)])
+        return np.concatenate([np.asarray(getattr(self, f.name), float).reshape(-1) for f in fields(self)])
 
     @classmethod
     def from_vector(cls, values: Vector) -> Self:
@@ -82,8 +95,7 @@ class GeometryRecord:
         start = 0
         for f in fields(cls):
             size = math.prod(_shape(f))
-            part = [float(v) for v in values[start : start + size]]
-            items[f.name] = part[0] if _shape(f) == () else tuple(part)
+            items[f.name] = _frozen(np.asarray(values[start : start + size], dtype=float).reshape(_shape(f)))
             start += size
         return cls(**items)
 
@@ -91,9 +103,9 @@ class GeometryRecord:
         """A copy with some fields changed."""
         return replace(self, **changes)
 
-    def as_dict(self) -> dict[str, float | list[float]]:
-        """Field names to plain numbers or lists, for files."""
-        return {f.name: list(v) if isinstance(v := getattr(self, f.name), tuple) else v for f in fields(self)}
+    def as_dict(self) -> dict[str, Any]:
+        """Field names to plain numbers, lists or lists of rows, for files."""
+        return {f.name: np.asarray(getattr(self, f.name)).tolist() for f in fields(self)}
 
     @classmethod
     def descriptions(cls) -> dict[str, str]:
@@ -107,7 +119,7 @@ class GeometryRecord:
 
 
 def _shape(f: Field[Any]) -> tuple[int, ...]:
-    return (len(f.default),) if isinstance(f.default, tuple) else ()
+    return np.shape(f.default)  # type: ignore[arg-type]
 
 
 def _numbers(given: object) -> Vector | None:
@@ -117,3 +129,8 @@ def _numbers(given: object) -> Vector | None:
     except ValueError:  # ragged
         return None
     return array.astype(float) if array.dtype.kind in "iuf" else None
+
+
+def _frozen(array: Vector) -> Any:
+    """A number, a tuple, or a tuple of tuples: hashable."""
+    return tuple(_frozen(row) for row in array) if array.ndim else float(array)

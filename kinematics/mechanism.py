@@ -92,6 +92,11 @@ class Mechanism(ABC):
         """(n, n) pose rates from the twist; the identity unless the pose holds Euler angles."""
         return ca.SX.eye(pose.shape[0])
 
+    @classmethod
+    def closure_by_twist(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(m, n) derivative of the closure by the twist; to be replaced where Euler angles would spoil it."""
+        return ca.jacobian(cls.closure(pose, joints, g), pose) @ cls.pose_rate_map(pose)
+
     @property
     @abstractmethod
     def characteristic_length(self) -> float:

@@ -34,7 +34,7 @@ class Model:
         if self.closure.shape[0] != self.joints.shape[0] or not j_q.sparsity().is_diag():
             raise TypeError(f"{mechanism.__name__}: the closure needs one row a limb, each with its own joint")
         self.j_q = ca.diag(j_q)
-        self.j_x = -ca.jacobian(self.closure, self.pose) @ mechanism.pose_rate_map(self.pose)
+        self.j_x = -mechanism.closure_by_twist(self.pose, self.joints, self.g)
 
     @cached_property
     def j_q_at_pose(self) -> ca.SX:

@@ -1,0 +1,272 @@
+"""Gough-Stewart platform, six UPS legs (Khalil and Dombre 2002, chapter 8; equation numbers are the chapter's).
+
+Pose [x, y, z, roll, pitch, yaw] of the tool frame R_E in the reference frame R_f, R = Rz(yaw) Ry(pitch) Rx(roll);
+twists (v of O_E, omega) and wrenches (force, moment about O_E) are expressed in R_f. Joints are the leg lengths.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import ClassVar
+
+import casadi as ca
+import numpy as np
+
+from kinematics.bodies import Bodies
+from kinematics.errors import InvalidShape
+from kinematics.geometry import TURN
+from kinematics.gough_stewart_forward import ForwardSolution, assembly_modes, solve_forward
+from kinematics.gough_stewart_geometry import GoughStewartGeometry
+from kinematics.indices import FviBounds
+from kinematics.mechanism import Array, Mechanism
+from kinematics.orientation import angles
+
+_SCREW = ("x", "y", "z", "about x", "about y", "about z")
+
+
+@dataclass(frozen=True)
+class GoughStewartInertia:
+    """Electric cylinders of a laboratory hexapod: an assumption of this project, not a datasheet. SI units.
+
+    Attributes:
+        screw_lead: of each cylinder [m/turn].
+        drive: inertia of motor and screw about the screw's axis.
+        rod_mass: the moving end of each leg, a particle at B_i; the other end stays near A_i.
+        platform_mass: in six equal particles at the B_i; the payload is a particle at the tool point.
+    """
+
+    screw_lead: float = 0.010
+    drive: float = 1.2e-4
+    rod_mass: float = 0.8
+    platform_mass: float = 12.0
+
+
+class GoughStewart(Mechanism):
+    """Pose [x, y, z, roll, pitch, yaw], joints q1..q6, the leg lengths |A_i B_i|.
+
+    A leg reaches every point but its own base joint; `leg_limits` of the geometry adds a stroke, beyond which
+    `inverse` and `forward` give NaN and `reach` is negative. The Jacobians are those of the legs as lines and do not
+    ask for the stroke.
+    """
+
+    Geometry = GoughStewartGeometry
+    Inertia = GoughStewartInertia
+    geometry: GoughStewartGeometry
+    inertia: GoughStewartInertia
+    pose_names = ("x", "y", "z", "roll", "pitch", "yaw")
+    joint_names = ("q1", "q2", "q3", "q4", "q5", "q6")
+    joint_units = ("m",) * 6
+    rotations = (3, 4, 5)
+    home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.6, 0.0, 0.0, 0.0)  # of the default geometry
+    fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=2000.0, speed=0.3, force=500.0)
+
+    @property
+    def characteristic_length(self) -> float:
+        """Mean distance of the B_i from their centroid [m]."""
+        points = np.array(self.geometry.platform_points)
+        return float(np.linalg.norm(points - points.mean(axis=0), axis=1).mean())
+
+    @property
+    def initial_pose(self) -> Array:
+        """(6,) where `forward` starts unless told otherwise: the platform above the base, turned to match it best.
+
+        Above is along the normal of the base's mean plane, on the side of R_0's z axis (or x, or y, if level with it),
+        three quarters of the mean radii's sum away; for the default geometry it is `home`.
+        """
+        base, platform = self.geometry.in_reference_frame(), self.geometry.in_tool_frame()
+        a, b = base - base.mean(axis=0), platform - platform.mean(axis=0)
+        normal = np.linalg.svd(a)[2][2]
+        components = np.array(self.geometry.Z)[:3, :3].T @ normal
+        signs = [c for c in components[[2, 0, 1]] if abs(c) > 1e-9]
+        radii = sum(np.linalg.norm(points, axis=1).mean() for points in (a, b))
+        u, _, vt = np.linalg.svd(a.T @ b)
+        turn = u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt))]) @ vt
+        height = 0.75 * radii * math.copysign(1.0, signs[0]) * normal
+        return np.concatenate([base.mean(axis=0) + height - turn @ platform.mean(axis=0), angles(turn[None])[0]])
+
+    # Points.
+
+    @staticmethod
+    def base_points(g: SimpleNamespace) -> ca.SX:
+        """(3, 6) A_i in R_f; [8.6]."""
+        z = ca.reshape(g.Z, 4, 4).T
+        return z[:3, :3] @ ca.reshape(g.base_points, 3, 6) + ca.repmat(z[:3, 3], 1, 6)
+
+    @staticmethod
+    def tool_points(g: SimpleNamespace) -> ca.SX:
+        """(3, 6) B_i in R_E, by the inverse of E; [8.7] prints E itself."""
+        e = ca.reshape(g.E, 4, 4).T
+        return e[:3, :3].T @ (ca.reshape(g.platform_points, 3, 6) - ca.repmat(e[:3, 3], 1, 6))
+
+    @staticmethod
+    def rotation(pose: ca.SX) -> ca.SX:
+        """(3, 3) R = Rz(yaw) Ry(pitch) Rx(roll)."""
+        (cr, cp, cy), (sr, sp, sy) = ([f(pose[3 + k]) for k in range(3)] for f in (ca.cos, ca.sin))
+        return ca.vertcat(
+            ca.horzcat(cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
+            ca.horzcat(sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
+            ca.horzcat(-sp, cp * sr, cp * cr),
+        )
+
+    @staticmethod
+    def pose_rate_map(pose: ca.SX) -> ca.SX:
+        """Euler-angle rates from omega; not defined where the pitch is a quarter turn."""
+        cp, sp, cy, sy = ca.cos(pose[4]), ca.sin(pose[4]), ca.cos(pose[5]), ca.sin(pose[5])
+        rates = ca.vertcat(
+            ca.horzcat(cy / cp, sy / cp, 0), ca.horzcat(-sy, cy, 0), ca.horzcat(cy * sp / cp, sy * sp / cp, 1)
+        )
+        return ca.diagcat(ca.SX.eye(3), rates)
+
+    @staticmethod
+    def legs(pose: ca.SX, g: SimpleNamespace, twist: ca.SX | None = None) -> ca.SX:
+        """(3, 6) A_i B_i in R_f; [8.10]. With a small twist: after that displacement, to first order."""
+        ends = GoughStewart.rotation(pose) @ GoughStewart.tool_points(g)
+        place = pose[:3]
+        if twist is not None:
+            ends, place = ends + ca.skew(twist[3:]) @ ends, place + twist[:3]
+        return ends + ca.repmat(place, 1, 6) - GoughStewart.base_points(g)
+
+    # The closure and its closed forms.
+
+    @staticmethod
+    def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """q_i - |A_i B_i|: J_q is the identity and J_x the inverse Jacobian [8.20]."""
+        return joints - GoughStewart.inverse_closed_form(pose, g)
+
+    @classmethod
+    def closure_by_twist(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """By a small displacement of the platform itself: regular at a pitch of a quarter turn too."""
+        twist = ca.SX.sym("twist", 6)
+        legs = cls.legs(pose, g, twist)
+        derivative = ca.jacobian(joints - _lengths(legs), twist)
+        return ca.substitute(derivative, twist, ca.SX.zeros(6))
+
+    @staticmethod
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """[8.11]; unique, as a length is positive."""
+        return _lengths(GoughStewart.legs(pose, g))
+
+    @staticmethod
+    def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """How far each leg is from its shortest and longest length, by default 0 and infinity [m]."""
+        lengths = GoughStewart.inverse_closed_form(pose, g)
+        return ca.fmin(lengths - g.leg_limits[0], g.leg_limits[1] - lengths)
+
+    @staticmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """1 for J_q; 8 rho^3 for det J_x, rho the root mean square distance of the B_i from their centroid.
+
+        By Hadamard's inequality on columns of squared sums 6 and 6 rho^2 (moments taken about the centroid).
+        """
+        points = ca.reshape(g.platform_points, 3, 6)
+        centred = points - ca.repmat(ca.sum2(points) / 6, 1, 6)
+        return ca.SX.ones(6), 8 * (ca.sumsqr(centred) / 6) ** 1.5
+
+    def inverse(self, pose: Array) -> Array:
+        """(..., 6) -> (..., 6) leg lengths [m]; a NaN row where a leg is beyond its limits or has no length."""
+        return self._allowed(super().inverse(pose))
+
+    def _allowed(self, joints: Array) -> Array:
+        low, high = self.geometry.leg_limits
+        allowed = ((joints > 0.0) & (joints >= low) & (joints <= high) & np.isfinite(joints)).all(
+            axis=-1, keepdims=True
+        )
+        return np.where(allowed, joints, np.nan)
+
+    # Rates and forces.
+
+    def leg_rates(self, pose: Array, twist: Array) -> Array:
+        """(..., 6), (..., 6) -> (..., 6) leg rates [m/s] from the twist of R_E; [8.12]."""
+        return np.einsum("...ij,...j->...i", self.inverse_jacobian(pose), _six(twist, "twist", _SCREW))
+
+    def legs_wrench(self, pose: Array, forces: Array) -> Array:
+        """(..., 6), (..., 6) -> (..., 6) the wrench that the legs exert on the platform; [8.26].
+
+        Args:
+            forces: along the legs [N], positive where a leg pushes.
+
+        Returns:
+            force [N] and moment about O_E [N m].
+        """
+        return np.einsum("...ij,...i->...j", self.inverse_jacobian(pose), _six(forces, "leg forces", self.joint_names))
+
+    def leg_forces(self, pose: Array, external_wrench: Array) -> Array:
+        """(..., 6), (..., 6) -> (..., 6) leg forces [N] that balance an external wrench on the platform.
+
+        The legs' own wrench is the opposite of the external one, so [8.26] enters with a minus sign. NaN on a
+        singularity.
+        """
+        transposed = np.swapaxes(self.inverse_jacobian(pose), -1, -2)
+        wrench = np.broadcast_to(_six(external_wrench, "wrench", _SCREW), transposed.shape[:-1])
+        values = np.linalg.svd(np.nan_to_num(transposed), compute_uv=False)
+        singular: Array = values[..., -1] <= 6.0 * np.finfo(float).eps * values[..., 0]
+        safe = np.where(singular[..., None, None], np.eye(6), transposed)
+        return np.where(singular[..., None], np.nan, np.linalg.solve(safe, -wrench[..., None])[..., 0])
+
+    # The forward model.
+
+    def lengths_and_jacobian(self, pose: Array) -> tuple[Array, Array]:
+        """Leg lengths (..., 6), whatever their limits, and the inverse Jacobian (..., 6, 6) [8.20] at once."""
+        lengths, jacobian = self._evaluate("newton", lambda m: [m.inverse, m.j_x], pose)
+        return lengths, jacobian
+
+    def forward(self, joints: Array, start: Array | None = None) -> Array:
+        """(..., 6) -> (..., 6): Newton's method from a start near, NaN where it did not converge; [8.6.4.2].
+
+        Args:
+            joints: leg lengths [m].
+            start: (..., 6) the current or last pose; `initial_pose` if not given.
+        """
+        return self.solve_forward(joints, start).pose
+
+    def solve_forward(self, joints: Array, start: Array | None = None, iterations: int = 30) -> ForwardSolution:
+        """As `forward`, and says where it converged, in how many steps and with which error."""
+        joints = self._allowed(self._joints(joints))
+        begin = self._poses(self.initial_pose if start is None else start)
+        return solve_forward(self, *self._together(joints, begin), iterations)
+
+    def assembly_modes(self, joints: Array) -> Array:
+        """(6,) -> (k, 6), every real pose with these leg lengths, at most 40; the nearest to `initial_pose` first.
+
+        Raises:
+            LostPaths: the continuation that finds them could not be certified.
+        """
+        joints = self._joints(joints)
+        if joints.ndim != 1:
+            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        return assembly_modes(self, self._allowed(joints))
+
+    # Masses and drawing.
+
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+        """Screws driven by the joints; rods, platform and payload carried by the pose."""
+        i, bodies = self.inertia, Bodies()
+        ends = self.base_points(g) + self.legs(pose, g)
+        bodies.of_joints.rotors.extend((i.drive * (TURN / i.screw_lead) ** 2, joints[k]) for k in range(6))
+        bodies.of_pose.particles.extend((i.rod_mass + i.platform_mass / 6, ends[:, k]) for k in range(6))
+        bodies.of_pose.particles.append((payload, pose[:3]))
+        return bodies
+
+    @staticmethod
+    def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:  # noqa: ARG004
+        """Base and platform as closed polygons, the six legs, and the tool from the platform's centroid."""
+        base = GoughStewart.base_points(g)
+        ends = base + GoughStewart.legs(pose, g)
+        around = [*range(6), 0]
+        lines = {"base": base[:, around], "platform": ends[:, around]}
+        lines.update({f"leg {i + 1}": ca.horzcat(base[:, i], ends[:, i]) for i in range(6)})
+        lines["tool"] = ca.horzcat(ca.sum2(ends) / 6, pose[:3])
+        return lines
+
+
+def _lengths(legs: ca.SX) -> ca.SX:
+    return ca.sqrt(ca.sum1(legs * legs)).T
+
+
+def _six(values: Array, what: str, names: tuple[str, ...]) -> Array:
+    array = np.asarray(values, dtype=float)
+    if array.ndim == 0 or array.shape[-1] != 6:
+        raise InvalidShape(what, names, array.shape)
+    return array

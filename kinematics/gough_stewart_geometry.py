@@ -1,0 +1,164 @@
+"""Geometry of a 6-UPS platform: joint centres, frames (8.6.1 of Khalil and Dombre) and symmetric layouts (8.5.2.2)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from kinematics.architecture_singularity import why_singular
+from kinematics.errors import InvalidGeometry, InvalidValue
+from kinematics.geometry import TURN, GeometryRecord, Points, frame, length
+
+Array = np.ndarray
+_DEG = math.pi / 180.0
+_RIGID = 1e-9  # how far a frame's rotation may be from orthonormal
+
+
+def symmetric_points(radius: float, half_angle: float, first: float) -> Points:
+    """(6, 3) points on a circle: three pairs, 2 `half_angle` apart, at azimuths `first` + 120 deg k."""
+    pairs = [first + TURN / 3 * k + side * half_angle for k in range(3) for side in (-1, 1)]
+    return tuple((radius * math.cos(azimuth), radius * math.sin(azimuth), 0.0) for azimuth in pairs)
+
+
+def _platform(radius: float, half_angle: float) -> Points:
+    """Pairs midway between the base's, counted so that legs 2k and 2k + 1 share one."""
+    points = symmetric_points(radius, half_angle, 60 * _DEG)
+    return points[-1:] + points[:-1]
+
+
+@dataclass(frozen=True)
+class GoughStewartGeometry(GeometryRecord):
+    """Joint centres A_i and B_i in the frames R_0 of the base and R_m of the platform.
+
+    The defaults are this project's: the chapter gives no dimensions. R_0 and R_m may lie anywhere; `canonical` moves
+    them to where the chapter puts them.
+
+    Raises:
+        InvalidGeometry: besides what any geometry refuses: a frame is not a rigid transform, the leg limits are not in
+            order, or the architecture is singular at every pose (the message says why).
+    """
+
+    base_points: tuple[tuple[float, ...], ...] = length(
+        symmetric_points(0.5, 12 * _DEG, 0.0), minimum=None, doc="A_i in R_0"
+    )
+    platform_points: tuple[tuple[float, ...], ...] = length(_platform(0.3, 12 * _DEG), minimum=None, doc="B_i in R_m")
+    Z: tuple[tuple[float, ...], ...] = frame(doc="Z, base frame R_0 in the reference frame R_f; [8.5]")
+    E: tuple[tuple[float, ...], ...] = frame(doc="E, tool frame R_E in the platform's frame R_m; [8.5]")
+    leg_limits: tuple[float, float] = length(
+        (0.0, math.inf), minimum=None, bounded=False, doc="shortest and longest leg; not in the chapter"
+    )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in ("Z", "E"):
+            matrix = np.array(getattr(self, name))
+            rotation = matrix[:3, :3]
+            rigid = np.allclose(rotation @ rotation.T, np.eye(3), rtol=0.0, atol=_RIGID) and np.linalg.det(rotation) > 0
+            if not rigid or np.any(matrix[3] != (0.0, 0.0, 0.0, 1.0)):
+                raise self._invalid(name, getattr(self, name), "a rotation and a translation above (0, 0, 0, 1)")
+        low, high = self.leg_limits
+        if not 0.0 <= low < high:
+            raise self._invalid("leg_limits", self.leg_limits, "0 <= shortest < longest")
+        reason = why_singular(np.array(self.base_points), np.array(self.platform_points))
+        if reason is not None:
+            raise SingularArchitecture(reason)
+
+    @classmethod
+    def ssm(
+        cls,
+        base_radius: float = 0.5,
+        platform_radius: float = 0.3,
+        base_half_angle: float = 12 * _DEG,
+        platform_half_angle: float = 12 * _DEG,
+    ) -> Self:
+        """Simplified symmetric manipulator: base and platform are hexagons.
+
+        Args:
+            base_radius, platform_radius: of the circles through the joint centres [m].
+            base_half_angle: half the angle between the legs of a base pair; the pairs are at 0, 120, 240 deg [rad].
+            platform_half_angle: the same on the platform; its pairs are at 60, 180, 300 deg [rad].
+
+        Raises:
+            InvalidValue: a radius is not positive or a half angle is outside [0, 60 deg].
+            InvalidGeometry: the hexagons are similar (the half angles add up to 60 deg): singular everywhere.
+        """
+        for name, radius in (("base_radius", base_radius), ("platform_radius", platform_radius)):
+            if not 0.0 < radius < math.inf:
+                raise InvalidValue(name, radius, "a finite radius > 0 m")
+        for name, half in (("base_half_angle", base_half_angle), ("platform_half_angle", platform_half_angle)):
+            if not 0.0 <= half <= TURN / 6:
+                raise InvalidValue(name, half, "an angle from 0 to pi / 3 rad")
+        return cls(symmetric_points(base_radius, base_half_angle, 0.0), _platform(platform_radius, platform_half_angle))
+
+    @classmethod
+    def tssm(cls, base_radius: float = 0.5, platform_radius: float = 0.3, base_half_angle: float = 12 * _DEG) -> Self:
+        """Triangular simplified symmetric manipulator: hexagonal base, triangular platform; arguments as in `ssm`."""
+        return cls.ssm(base_radius, platform_radius, base_half_angle, 0.0)
+
+    @classmethod
+    def mssm(cls, base_radius: float = 0.5, platform_radius: float = 0.3) -> Self:
+        """Minimal simplified symmetric manipulator, an octahedron: two triangles; arguments as in `ssm`."""
+        return cls.ssm(base_radius, platform_radius, 0.0, 0.0)
+
+    def in_reference_frame(self) -> Array:
+        """(6, 3) A_i in R_f; [8.6]."""
+        return _moved(np.array(self.Z), np.array(self.base_points))
+
+    def in_tool_frame(self) -> Array:
+        """(6, 3) B_i in R_E: E^-1 maps them, where [8.7] prints E."""
+        return _moved(_inverse(np.array(self.E)), np.array(self.platform_points))
+
+    def canonical(self) -> Self:
+        """The same robot with R_0 and R_m where 8.6.1 puts them: at A_1 and B_1, x to A_2 and B_2, A_6 and B_6 in xy.
+
+        Twelve of the thirty-six coordinates are then zero, and Z and E hold twelve parameters in their place.
+
+        Raises:
+            InvalidGeometry: points 1, 2 and 6 of base or platform lie on one line and define no frame.
+        """
+        base, platform = np.array(self.base_points), np.array(self.platform_points)
+        on_base, on_platform = self._frame_of(base, "base_points"), self._frame_of(platform, "platform_points")
+        return self.with_values(
+            base_points=_moved(_inverse(on_base), base),
+            platform_points=_moved(_inverse(on_platform), platform),
+            Z=np.array(self.Z) @ on_base,
+            E=_inverse(on_platform) @ np.array(self.E),
+        )
+
+    def _frame_of(self, points: Array, name: str) -> Array:
+        """(4, 4) frame on points 1, 2 and 6."""
+        x, other = points[1] - points[0], points[5] - points[0]
+        z = np.cross(x, other)
+        if np.linalg.norm(z) <= _RIGID * np.ptp(points) ** 2:
+            raise self._invalid(
+                name, getattr(self, name), "points 1, 2 and 6 not on one line, for the chapter's frames"
+            )
+        x, z = x / np.linalg.norm(x), z / np.linalg.norm(z)
+        result = np.eye(4)
+        result[:3] = np.column_stack([x, np.cross(z, x), z, points[0]])
+        return result
+
+
+class SingularArchitecture(InvalidGeometry):
+    """The six legs are dependent at every pose."""
+
+    def __init__(self, reason: str) -> None:
+        self.reason = reason
+        super().__init__(
+            "GoughStewart", "base_points and platform_points", f"a singular architecture, as {reason}",
+            "legs that are independent at some pose",
+        )  # fmt: skip
+
+
+def _moved(transform: Array, points: Array) -> Array:
+    return points @ transform[:3, :3].T + transform[:3, 3]
+
+
+def _inverse(transform: Array) -> Array:
+    result = np.eye(4)
+    result[:3, :3] = transform[:3, :3].T
+    result[:3, 3] = -transform[:3, :3].T @ transform[:3, 3]
+    return result
