@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.bodies import Bodies
+from kinematics.distinct import distinct
 from kinematics.errors import InvalidShape
 from kinematics.geometry import TURN, GeometryRecord, length
 from kinematics.interpreter import evaluate
@@ -174,11 +175,9 @@ class Planar(Mechanism):
         rows, p, theta = placements(centres, radii, points, every=True)
         det = rods_and_determinant(p, theta, centres[rows], points)[2]
         length = self.characteristic_length
-        size = length * np.prod(radii) + 1e-300
-        blur = 1e-9 + 1e-14 / np.maximum(np.abs(det) / size, 1e-7)  # a double pose is found as two near ones
         turn = np.exp(1j * theta)
         apart = np.abs(p[:, None] - p) / length + np.abs(turn[:, None] - turn)
-        kept = [i for i in range(len(p)) if not (apart[i, :i] < blur[i]).any()]
+        kept = distinct(apart, det / (length * np.prod(radii) + 1e-300))
         away = np.abs(p - complex(*self.home[:2])) / length + np.abs(turn - np.exp(1j * self.home[2]))
         return _poses(p, theta)[sorted(kept, key=lambda i: away[i])]
 

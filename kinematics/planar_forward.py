@@ -15,6 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinematics.polynomial import real_roots
+from kinematics.polynomial_product import product
 
 Array = np.ndarray
 
@@ -35,14 +36,10 @@ def placements(centres: Array, radii: Array, points: Array, every: bool = False)
     Returns:
         rows (j,): which problem; p (j,) complex and theta (j,) in (-pi, pi]. A placement may appear more than once.
     """
-    found = [
-        _placements(centres[start : start + _BLOCK], radii[start : start + _BLOCK], points, every)
-        for start in range(0, len(centres), _BLOCK)
-    ]
-    rows = [start * _BLOCK + f[0] for start, f in enumerate(found)]
-    if not found:
-        return np.zeros(0, int), np.zeros(0, complex), np.zeros(0)
-    return np.concatenate(rows), *(np.concatenate([f[i] for f in found]) for i in (1, 2))
+    blocks = range(0, max(len(centres), 1), _BLOCK)
+    found = [_placements(centres[s : s + _BLOCK], radii[s : s + _BLOCK], points, every) for s in blocks]
+    rows = [start + rows for start, (rows, _, _) in zip(blocks, found, strict=True)]
+    return np.concatenate(rows), np.concatenate([f[1] for f in found]), np.concatenate([f[2] for f in found])
 
 
 def rods_and_determinant(p: Array, theta: Array, centres: Array, points: Array) -> tuple[Array, Array, Array]:
@@ -95,8 +92,8 @@ def _sextic(centres: Array, radii: Array, points: Array) -> Array:
     cross = _half_angle((across + along).imag, mixed[:, 0].imag - mixed[:, 1].imag, mixed[:, 0].real - mixed[:, 1].real)
     one = np.array([[1.0, 0.0, 1.0]])
     f2, f3 = ((square[k] + (radii[:, 0] ** 2 - radii[:, k + 1] ** 2)[:, None] * one) / 2 for k in (0, 1))
-    left = _times(_times(f2, f2), square[1]) + _times(_times(f3, f3), square[0]) - 2 * _times(_times(f2, f3), dot)
-    result: Array = left - radii[:, :1] ** 2 * _times(_times(cross, cross), one)
+    left = product(product(f2, f2), square[1]) + product(product(f3, f3), square[0]) - 2 * product(product(f2, f3), dot)
+    result: Array = left - radii[:, :1] ** 2 * product(product(cross, cross), one)
     return result
 
 
@@ -134,14 +131,6 @@ def _polished(p: Array, theta: Array, c: Array, r: Array, b: Array, steps: int) 
 def _half_angle(constant: Array, cosine: Array, sine: Array) -> Array:
     """(k, 3) constant + cosine cos + sine sin, times 1 + t^2, in t = tan of half the angle."""
     return np.stack(np.broadcast_arrays(constant - cosine, 2 * sine, constant + cosine), axis=-1)
-
-
-def _times(first: Array, second: Array) -> Array:
-    """Products of polynomials, row by row."""
-    result = np.zeros((len(first), first.shape[1] + second.shape[1] - 1))
-    for i in range(second.shape[1]):
-        result[:, i : i + first.shape[1]] += first * second[:, i : i + 1]
-    return result
 
 
 def _cross(first: Array, second: Array) -> Array:
