@@ -6,15 +6,18 @@ from kinematics.gough_stewart import GoughStewart
 from kinematics.gough_stewart_geometry import SingularArchitecture
 from kinematics.gough_stewart_modes import LostPaths
 from kinematics.heli4 import Heli4
+from kinematics.hexa import Hexa
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Mechanism
 from kinematics.par4 import Par4
+from kinematics.peppermill import Peppermill
 from kinematics.planar_3prr import Planar3PRR
 from kinematics.planar_3rpr import Planar3RPR
 from kinematics.planar_3rrr import Planar3RRR
 
 MECHANISMS: dict[str, type[Mechanism]] = {
-    cls.__name__: cls for cls in (Heli4, GoughStewart, Planar3RPR, Planar3PRR, Planar3RRR, Delta, Par4)
+    cls.__name__: cls
+    for cls in (Heli4, Peppermill, GoughStewart, Planar3RPR, Planar3PRR, Planar3RRR, Delta, Hexa, Par4)
 }
 
 __all__ = [
@@ -23,6 +26,7 @@ __all__ = [
     "FviBounds",
     "GoughStewart",
     "Heli4",
+    "Hexa",
     "InvalidGeometry",
     "InvalidShape",
     "InvalidValue",
@@ -30,6 +34,7 @@ __all__ = [
     "LostPaths",
     "Mechanism",
     "Par4",
+    "Peppermill",
     "Planar3PRR",
     "Planar3RPR",
     "Planar3RRR",

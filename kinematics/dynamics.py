@@ -2,7 +2,7 @@
 
 The rigid-body model of a mechanism is a list of particles and rotors, each moved either by the joints or by the pose;
 a rod's mass is split between its two ends, so that every mass belongs to one side. With Q_q and Q_x the inertia and
-weight forces on both sides, virtual work gives J_m^T (tau - Q_q) = Q_x.
+weight forces on both sides, virtual work gives J_m^T (tau - Q_q) = Q_x. Actuators = C joints then bear C^-T tau.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ GRAVITY = 9.80665  # m/s^2, along -e_z
 
 
 def inverse_dynamics(robot: Mechanism, payload: float, pose: Array, velocity: Array, acceleration: Array) -> Array:
-    """Joint torques (or forces) that make the platform follow a motion.
+    """Actuator torques (or forces) that make the platform follow a motion.
 
     Args:
         robot: its `bodies(...)` states the masses.
@@ -29,17 +29,23 @@ def inverse_dynamics(robot: Mechanism, payload: float, pose: Array, velocity: Ar
         pose, velocity, acceleration: (..., n) the pose and its time derivatives.
 
     Returns:
-        (..., m) torques [N m] or forces [N]; NaN out of reach.
+        (..., m) torques [N m] or forces [N] at the actuators; NaN out of reach.
     """
 
     def build(model: Model) -> Build:
         rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration")]
-        return [model.pose, *rates], [_torques(robot, model, payload, rates)]
+        return [model.pose, *rates], [_at_actuators(model, _torques(robot, model, payload, rates))]
 
     named = {"pose": pose, "velocity": velocity, "acceleration": acceleration}
     given = [checked(v, name, robot.pose_names) for name, v in named.items()]
     program = robot.program(("inverse_dynamics", payload, robot.inertia), build)
     return evaluate(program, *np.broadcast_arrays(*given))[0]
+
+
+def _at_actuators(model: Model, torques: ca.SX) -> ca.SX:
+    """C^-T tau: actuators and joints do the same work."""
+    transposed, det = adjugate(model.drives.T)
+    return transposed @ torques / det
 
 
 def _torques(robot: Mechanism, model: Model, payload: float, rates: list[ca.SX]) -> ca.SX:

@@ -162,7 +162,8 @@ class GoughStewart(Mechanism):
         """
         points = ca.reshape(g.platform_points, 3, 6)
         centred = points - ca.repmat(ca.sum2(points) / 6, 1, 6)
-        return ca.SX.ones(6), 8 * (ca.sumsqr(centred) / 6) ** 1.5
+        mean_square = ca.sumsqr(centred) / 6
+        return ca.SX.ones(6), 8 * mean_square * ca.sqrt(mean_square)
 
     def inverse(self, pose: Array) -> Array:
         """(..., 6) -> (..., 6) leg lengths [m]; a NaN row where a leg is beyond its limits or has no length."""
@@ -211,6 +212,16 @@ class GoughStewart(Mechanism):
         """Leg lengths (..., 6), whatever their limits, and the inverse Jacobian (..., 6, 6) [8.20] at once."""
         lengths, jacobian = self._evaluate("newton", lambda m: [m.inverse, m.j_x], pose)
         return lengths, jacobian
+
+    def leg_errors(self, pose: Array, joints: Array) -> tuple[Array, Array]:
+        """(k, 6) what each leg lacks to have the length wanted [m], and the inverse Jacobian (k, 6, 6)."""
+        lengths, jacobian = self.lengths_and_jacobian(pose)
+        return joints - lengths, jacobian
+
+    def leg_sizes(self, joints: Array) -> tuple[Array, Array]:
+        """(k,) mean leg length, and the largest number that rounding of a leg's length comes from [m]."""
+        points = (self.geometry.in_reference_frame(), self.geometry.in_tool_frame())
+        return joints.mean(axis=1), joints.max(axis=1) + sum(float(np.abs(p).max()) for p in points)
 
     def forward(self, joints: Array, start: Array | None = None) -> Array:
         """(..., 6) -> (..., 6): Newton's method from a start near, NaN where it did not converge; [8.6.4.2].

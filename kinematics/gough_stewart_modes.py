@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from kinematics.architecture_singularity import dependence
 from kinematics.errors import LinkwrightError
 from kinematics.homotopy import refine, track
 from kinematics.study import leg_quadrics, study_quadric
@@ -29,23 +30,24 @@ Array = np.ndarray
 
 GENERIC_COUNT = 40
 _LOOPS = 60
+_SURE = 1e-4  # smallest ratio of singular values, at the best pose, for which the count was found reliable
 _ROUTES = 8  # how many ways to a target are tried
 _ROTATION = 4  # coordinates of e, the first block
 _NEAR_END = 1.0 - 1e-4  # a path that sticks before did not come to a singular end
 _SAME = 1e-6  # distance of unit points below which they are one solution
-_FINITE = 1e-7  # |K| of a unit point above which it is a displacement
+_FINITE = 1e-10  # |K| over the square of e's norm above which a point is a displacement
 _REAL = 1e-2  # imaginary part of a unit point below which a real pose may lie near
 _REGULAR = 1e-9  # the last Newton step at an end that counts as a regular solution
 
 
 class LostPaths(LinkwrightError):
-    """The paths to a set of leg lengths could not be certified, so the assembly modes are not known."""
+    """The continuation could not be certified, so the assembly modes are not known."""
 
     exit_status = 1
 
-    def __init__(self, squares: Array) -> None:
-        self.leg_lengths = tuple(float(q) for q in np.sqrt(squares))
-        super().__init__(f"assembly modes for leg lengths {self.leg_lengths}: the continuation lost a path")
+    def __init__(self, stage: str, found: object, expected: str) -> None:
+        self.stage, self.found, self.expected = stage, found, expected
+        super().__init__(f"assembly modes, {stage}: found {found}; expected {expected}")
 
 
 class Platform(NamedTuple):
@@ -76,8 +78,7 @@ def generic() -> tuple[Platform, Array]:
         LostPaths: monodromy did not find 40.
     """
     rng = np.random.default_rng(1996)
-    home, x = _with_a_solution(rng)
-    known = x[None]
+    home, known = _with_a_pose(rng, _complex(rng, 6, 3), _complex(rng, 6, 3))
     for _ in range(_LOOPS):
         stations = [home, _random_platform(rng), _random_platform(rng), home]
         ends = known
@@ -87,7 +88,7 @@ def generic() -> tuple[Platform, Array]:
         known = distinct(np.concatenate([known, _regular(home, ends)]))
         if len(known) >= GENERIC_COUNT:
             return home, known
-    raise LostPaths(home.squares.real)
+    raise LostPaths("generic platform", f"{len(known)} poses", f"{GENERIC_COUNT}")
 
 
 @lru_cache(maxsize=64)
@@ -101,20 +102,27 @@ class ModeSolver:
 
     Args:
         base, platform: (6, 3) joint centres, each about its centroid and of size near 1.
+
+    Raises:
+        LostPaths: two ways to the geometry kept different poses, or it is so near a singular architecture that some
+            of its poses may be too far away to be followed.
     """
 
     def __init__(self, base: Array, platform: Array) -> None:
+        independent = dependence(base, platform)
+        if independent < _SURE:
+            raise LostPaths("this geometry", f"legs independent by {independent:.1e} only", f"at least {_SURE:g}")
         rng = np.random.default_rng(40)
-        self.start = Platform(base, platform, 3.0 + _complex(rng, 6))
+        self.start, pose = _with_a_pose(rng, base, platform)  # near a singular architecture too, its poses are finite
         origin, known = generic()
         found = [_regular(self.start, self._follow([origin, self.start], known)[0])]
         for _ in range(_ROUTES):  # a second way around must not find more, or there is a third, and so on
             around = [origin, _random_platform(rng), self.start]
             found.append(distinct(np.concatenate([found[-1], _regular(self.start, self._follow(around, known)[0])])))
-            if len(found[-1]) == len(found[-2]):
+            if len(found[-1]) == len(found[-2]) and _distances(pose, found[-1]).min(initial=1.0) < _SAME:
                 self.solutions = found[-1]
                 return
-        raise LostPaths(self.start.squares.real)
+        raise LostPaths("this geometry", [len(f) for f in found], "the same poses on two ways to it")
 
     @staticmethod
     def _follow(stations: list[Platform], points: Array) -> tuple[Array, Array]:
@@ -149,7 +157,7 @@ class ModeSolver:
                 return ends
             around = self.start._replace(squares=3.0 * _complex(rng, 6))
             stations = [self.start, around, target]
-        raise LostPaths(squares)
+        raise LostPaths("these leg lengths", f"{_ROUTES} ways with a lost path", "one that loses none")
 
     def nearly_real(self, squares: Array) -> Array:
         """(6,) squared lengths -> (k, 8) real points at or close to every real solution."""
@@ -183,9 +191,9 @@ def _distances(x: Array, y: Array) -> Array:
 def _regular(target: Platform, ends: Array) -> Array:
     """Those of the ends that are regular displacements (K != 0), refined."""
     refined, last = refine(target.system(), ends, _ROTATION)
-    size = np.abs(np.sum(refined[:, :4] ** 2, axis=1))
-    moved = np.linalg.norm(refined, axis=1)
-    return refined[(last < _REGULAR) & (size > _FINITE) & np.isfinite(moved)]
+    e = refined[:, :_ROTATION]
+    size = np.abs(np.sum(e * e, axis=1)) / np.sum(np.abs(e) ** 2, axis=1)
+    return refined[(last < _REGULAR) & (size > _FINITE)]
 
 
 def _complex(rng: np.random.Generator, *shape: int) -> Array:
@@ -196,12 +204,11 @@ def _random_platform(rng: np.random.Generator) -> Platform:
     return Platform(_complex(rng, 6, 3), _complex(rng, 6, 3), 3.0 * _complex(rng, 6))
 
 
-def _with_a_solution(rng: np.random.Generator) -> tuple[Platform, Array]:
-    """A random complex platform whose leg lengths follow from a random complex displacement."""
-    base, platform, _ = _random_platform(rng)
+def _with_a_pose(rng: np.random.Generator, base: Array, platform: Array) -> tuple[Platform, Array]:
+    """A platform whose leg lengths follow from a random complex displacement, and that displacement (1, 8)."""
     e, f = _complex(rng, 4), _complex(rng, 4)
     f -= e * (e @ f) / (e @ e)
     x = np.concatenate([e, f])
     at_zero = leg_quadrics(base, platform, np.zeros(6))
     squares = np.einsum("i,kij,j->k", x, at_zero, x) / (e @ e)
-    return Platform(base, platform, squares), x / np.linalg.norm(x)
+    return Platform(base, platform, squares), x[None] / np.linalg.norm(x)

@@ -79,6 +79,7 @@ class Heli4(RotaryLimbs, RodLevel):
     joint_names = ("q1", "q2", "q3", "q4")
     joint_units = ("rad",) * 4
     rotations = (3,)
+    counts_turns = True
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.7, 0.0)
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=150.0)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta", "epsilon_1", "epsilon_2")

@@ -1,4 +1,6 @@
-"""Performance indices of any mechanism, built on its inverse Jacobian J_m (q' = J_m t).
+"""Performance indices of any mechanism, built on the inverse Jacobian J_m of its actuators (q' = J_m t).
+
+Where drives couple the joints, J_m and q here are the motors': identical limits exist only there.
 
 FVI, v_w and f_w are expressions (39) and (40) of Shayya et al.; J_mw = J_m W^-1 is the homogeneous Jacobian, in which
 a characteristic length turns rotations into lengths.
@@ -66,3 +68,11 @@ def fvi_components(j_mw: ca.SX, bounds: FviBounds) -> ca.SX:
     """(2 m,) speeds over v_wl, then forces over f_wl; the FVI (39) is the smallest of them."""
     speeds, forces = isotropic_components(j_mw)
     return ca.vertcat(speeds * (bounds.joint_speed / bounds.speed), forces * (bounds.joint_effort / bounds.force))
+
+
+def smallest(components: ca.SX) -> ca.SX:
+    """Their minimum; the interpreter's FMIN passes NaN on."""
+    result = components[0]
+    for i in range(1, components.numel()):
+        result = ca.fmin(result, components[i])
+    return result

@@ -17,7 +17,7 @@ import numpy as np
 from kinematics.bodies import Bodies
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.geometry import GeometryRecord
-from kinematics.indices import FviBounds, fvi_components, homogeneous, isotropic_components
+from kinematics.indices import FviBounds, fvi_components, homogeneous, isotropic_components, smallest
 from kinematics.interpreter import bulk, evaluate
 from kinematics.linear import determinant
 from kinematics.model import Model, model_of
@@ -39,6 +39,7 @@ class Mechanism(ABC):
     joint_names: ClassVar[tuple[str, ...]]
     joint_units: ClassVar[tuple[str, ...]]  # rad or m
     rotations: ClassVar[tuple[int, ...]]  # which pose coordinates are angles
+    counts_turns: ClassVar[bool] = False  # whether an angle a turn on is another pose, as on a screw
     home: ClassVar[tuple[float, ...]]  # a pose well inside the workspace
     fvi_bounds: ClassVar[FviBounds]
     margins: ClassVar[tuple[str, ...]] = ("reach", "fvi", "J_q", "det_J_q", "det_J_x")
@@ -66,7 +67,7 @@ class Mechanism(ABC):
     @staticmethod
     @abstractmethod
     def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(m,) how far each limb is from not reaching [m]; negative where it cannot."""
+        """How far each limb is from not reaching [m], one row a limb; negative where it cannot."""
 
     @staticmethod
     @abstractmethod
@@ -82,6 +83,11 @@ class Mechanism(ABC):
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
         """Named polylines (3, k) that draw the mechanism: base, arms, rods, platform."""
 
+    @classmethod
+    def drives(cls, g: SimpleNamespace) -> ca.SX:  # noqa: ARG003
+        """(m, m) constant C with actuators = C joints; the identity unless the drives couple joints."""
+        return ca.SX.eye(len(cls.joint_names))
+
     @staticmethod
     def joint_cosines_and_sines(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX] | None:  # noqa: ARG004
         """(m,) cosines and (m,) sines of the joints at a pose, where the joints are revolute."""
@@ -96,6 +102,16 @@ class Mechanism(ABC):
     def closure_by_twist(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
         """(m, n) derivative of the closure by the twist; to be replaced where Euler angles would spoil it."""
         return ca.jacobian(cls.closure(pose, joints, g), pose) @ cls.pose_rate_map(pose)
+
+    @property
+    def actuator_names(self) -> tuple[str, ...]:
+        """What C joints is called; the joints themselves unless the drives couple them."""
+        return self.joint_names
+
+    @property
+    def actuator_units(self) -> tuple[str, ...]:
+        """Rad or m."""
+        return self.joint_units
 
     @property
     @abstractmethod
@@ -130,25 +146,33 @@ class Mechanism(ABC):
         pose, joints = self._together(pose, joints)
         return evaluate(program, pose, joints)[0]
 
-    def jacobians(self, pose: Array) -> tuple[Array, Array]:
-        """J_q (..., m, m) and J_x (..., m, n), with J_q q' = J_x t."""
-        diagonal, j_x = self._evaluate("jacobians", lambda model: [model.j_q_at_pose, model.j_x_at_pose], pose)
+    def jacobians(self, pose: Array, joints: Array | None = None) -> tuple[Array, Array]:
+        """J_q (..., m, m) and J_x (..., m, n), with J_q q' = J_x t; working mode, unless `joints` (..., m) say."""
+        if joints is None:
+            diagonal, j_x = self._evaluate("jacobians", lambda model: [model.j_q_at_pose, model.j_x_at_pose], pose)
+        else:
+            program = self.program("jacobians_of_joints", lambda m: ([m.pose, m.joints], [m.j_q, m.j_x]))
+            diagonal, j_x = evaluate(program, *self._together(self._poses(pose), self._joints(joints)))
         j_q = np.zeros((*diagonal.shape, diagonal.shape[-1]))
         j_q[..., range(diagonal.shape[-1]), range(diagonal.shape[-1])] = diagonal
         return j_q, j_x
 
     def inverse_jacobian(self, pose: Array) -> Array:
-        """(..., m, n) J_m = J_q^-1 J_x, so that q' = J_m t."""
+        """(..., m, n) J_m = J_q^-1 J_x, so that q' = J_m t; of the joints, see `actuator_jacobian`."""
         return self._evaluate("inverse_jacobian", lambda model: [model.inverse_jacobian], pose)[0]
 
+    def actuator_jacobian(self, pose: Array) -> Array:
+        """(..., m, n) C J_m: the rates of the actuators, which carry the limits, from the twist."""
+        return self._evaluate("actuator_jacobian", lambda model: [model.actuator_jacobian], pose)[0]
+
     def isotropic(self, pose: Array, characteristic_length: float | None = None) -> tuple[Array, Array]:
-        """v_w (...,) and f_w (...,): worst speed and force for unit joint speed and effort; Shayya et al. (40)."""
+        """v_w (...,) and f_w (...,): worst speed and force for unit actuator speed and effort; Shayya et al. (40)."""
         length = self._length(characteristic_length)
 
-        def smallest(model: Model) -> list[ca.SX]:
-            return [_smallest(v) for v in isotropic_components(self._homogeneous(model, length))]
+        def worst(model: Model) -> list[ca.SX]:
+            return [smallest(v) for v in isotropic_components(self._homogeneous(model, length))]
 
-        speed, force = self._evaluate(("isotropic", length), smallest, pose)
+        speed, force = self._evaluate(("isotropic", length), worst, pose)
         return speed[..., 0], force[..., 0]
 
     def fvi(self, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None) -> Array:
@@ -156,7 +180,7 @@ class Mechanism(ABC):
         return self.margin("fvi", pose, bounds, characteristic_length)
 
     def condition_number(self, pose: Array, characteristic_length: float | None = None) -> Array:
-        """(...,) 2-norm condition number of J_mw; inf on a singularity, NaN out of reach."""
+        """(...,) 2-norm condition number of J_mw at the actuators; inf on a singularity, NaN out of reach."""
         length = self._length(characteristic_length)
         (j_mw,) = self._evaluate(("homogeneous", length), lambda model: [self._homogeneous(model, length)], pose)
         good = np.isfinite(j_mw).all(axis=(-2, -1))
@@ -175,7 +199,7 @@ class Mechanism(ABC):
         bounds = bounds or self.fvi_bounds
         length = self._length(characteristic_length)
         (value,) = self._evaluate(
-            (name, bounds, length), lambda _: [_smallest(self.margin_components(name, bounds, length))], pose
+            (name, bounds, length), lambda _: [smallest(self.margin_components(name, bounds, length))], pose
         )
         return value[..., 0]
 
@@ -228,7 +252,7 @@ class Mechanism(ABC):
     # Helpers.
 
     def _homogeneous(self, model: Model, length: float) -> ca.SX:
-        return homogeneous(model.inverse_jacobian, self.rotations, length)
+        return homogeneous(model.actuator_jacobian, self.rotations, length)
 
     def _length(self, given: float | None) -> float:
         length = self.characteristic_length if given is None else float(given)
@@ -263,14 +287,6 @@ class Mechanism(ABC):
             np.broadcast_to(first, (*lead, first.shape[-1])),
             np.broadcast_to(second, (*lead, second.shape[-1])),
         )
-
-
-def _smallest(components: ca.SX) -> ca.SX:
-    """Their minimum; the interpreter's FMIN passes NaN on."""
-    result = components[0]
-    for i in range(1, components.numel()):
-        result = ca.fmin(result, components[i])
-    return result
 
 
 def checked(values: Array, what: str, names: tuple[str, ...]) -> Array:

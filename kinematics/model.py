@@ -17,7 +17,8 @@ class Model:
     """Expressions in the symbols `pose` (n,), `joints` (m,) and `geometry` (k,); `g` names the geometry's fields.
 
     The closure phi(pose, joints; geometry) = 0 has one row a limb and its sign is chosen so that
-    J_q = d phi / d joints and J_x = -d phi / d twist are the paper's; then J_q q' = J_x t.
+    J_q = d phi / d joints and J_x = -d phi / d twist are the paper's; then J_q q' = J_x t. The constant matrix `drives`
+    C takes joints to actuators.
 
     Raises:
         TypeError: a limb's closure holds another limb's joint, or there is not one row a joint.
@@ -30,6 +31,7 @@ class Model:
         self.geometry, self.g = mechanism.Geometry.symbols()
         self.closure = mechanism.closure(self.pose, self.joints, self.g)
         self.inverse = mechanism.inverse_closed_form(self.pose, self.g)
+        self.drives = mechanism.drives(self.g)
         j_q = ca.jacobian(self.closure, self.joints)
         if self.closure.shape[0] != self.joints.shape[0] or not j_q.sparsity().is_diag():
             raise TypeError(f"{mechanism.__name__}: the closure needs one row a limb, each with its own joint")
@@ -50,6 +52,11 @@ class Model:
     def inverse_jacobian(self) -> ca.SX:
         """(m, n) J_m = J_q^-1 J_x in the working mode."""
         return ca.diag(1 / self.j_q_at_pose) @ self.j_x_at_pose
+
+    @cached_property
+    def actuator_jacobian(self) -> ca.SX:
+        """(m, n) C J_m: the actuators' rates from the twist, in the working mode."""
+        return self.drives @ self.inverse_jacobian
 
     def at_pose(self, expression: ca.SX) -> ca.SX:
         """The expression with the joints replaced by the inverse model.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import casadi as ca
@@ -13,7 +14,7 @@ from kinematics.model import Model
 
 
 class JointMotion(NamedTuple):
-    """Joints and their first three derivatives, each (..., m)."""
+    """Joints (or actuators) and their first three derivatives, each (..., m)."""
 
     position: Array
     first: Array
@@ -30,18 +31,28 @@ def joint_motion(robot: Mechanism, pose: Array, first: Array, second: Array, thi
     Returns:
         Joints and derivatives; NaN rows where a limb cannot reach.
     """
+    return _motion(robot, "joint_motion", lambda model: model.inverse, (pose, first, second, third))
 
+
+def actuator_motion(robot: Mechanism, pose: Array, first: Array, second: Array, third: Array) -> JointMotion:
+    """As `joint_motion`, of the actuators: what their limits bound. The same unless the drives couple joints."""
+    return _motion(robot, "actuator_motion", lambda model: model.drives @ model.inverse, (pose, first, second, third))
+
+
+def _motion(
+    robot: Mechanism, key: str, expression: Callable[[Model], ca.SX], motion: tuple[Array, Array, Array, Array]
+) -> JointMotion:
     def build(model: Model) -> Build:
         rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("first", "second", "third")]
-        return [model.pose, *rates], derivatives_along(model.inverse, model.pose, rates)
+        return [model.pose, *rates], derivatives_along(expression(model), model.pose, rates)
 
-    named = {"pose": pose, "first derivative": first, "second derivative": second, "third derivative": third}
-    given = [checked(v, name, robot.pose_names) for name, v in named.items()]
-    motion = JointMotion(*evaluate(robot.program("joint_motion", build), *np.broadcast_arrays(*given)))
-    unreachable = np.isnan(motion.position).any(axis=-1)
-    for part in motion:
+    named = zip(("pose", "first derivative", "second derivative", "third derivative"), motion, strict=True)
+    given = [checked(v, name, robot.pose_names) for name, v in named]
+    found = JointMotion(*evaluate(robot.program(key, build), *np.broadcast_arrays(*given)))
+    unreachable = np.isnan(found.position).any(axis=-1)
+    for part in found:
         part[unreachable] = np.nan
-    return motion
+    return found
 
 
 def derivatives_along(expression: ca.SX, variable: ca.SX, rates: list[ca.SX]) -> list[ca.SX]:

@@ -77,6 +77,7 @@ class Par4(RotaryLimbs):
     joint_names = ("q1", "q2", "q3", "q4")
     joint_units = ("rad",) * 4
     rotations = (3,)
+    counts_turns = True  # of the bars, by the gear
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.8, 0.0)
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
     margins = (*Mechanism.margins, "pi_joint")

@@ -78,7 +78,7 @@ def _region_faults(region: Mapping[str, Any], mechanism: type[Mechanism]) -> Ite
         interval = region.get(name)
         if interval is None:
             yield ("region", name)
-        elif _pose_dimension(name) is Dimension.ANGLE:
+        elif _within_a_turn(mechanism, name):
             angles = _numbers(interval)
             if angles and angles[-1] - angles[0] > _TURN:
                 yield ("region", name)
@@ -87,7 +87,7 @@ def _region_faults(region: Mapping[str, Any], mechanism: type[Mechanism]) -> Ite
 def _region_table(mechanism: type[Mechanism], region: object) -> Table:
     kind = region.get("kind") if isinstance(region, dict) else None
     own = table_of(BoxRegion if kind == "box" else CylinderRegion)
-    return own.updated({name: _coordinate(name) for name in _coordinates(mechanism, kind)})
+    return own.updated({name: _coordinate(mechanism, name) for name in _coordinates(mechanism, kind)})
 
 
 def _coordinates(mechanism: type[Mechanism], kind: object) -> tuple[str, ...]:
@@ -96,10 +96,13 @@ def _coordinates(mechanism: type[Mechanism], kind: object) -> tuple[str, ...]:
     return tuple(name for name in mechanism.pose_names if name not in disc)
 
 
-def _coordinate(name: str) -> Key:
-    dimension = _pose_dimension(name)
-    reach = ", at most a turn apart" if dimension is Dimension.ANGLE else ""
-    return Key(f"a number, or low < high{reach}", dimension)
+def _coordinate(mechanism: type[Mechanism], name: str) -> Key:
+    reach = ", at most a turn apart" if _within_a_turn(mechanism, name) else ""
+    return Key(f"a number, or low < high{reach}", _pose_dimension(name))
+
+
+def _within_a_turn(mechanism: type[Mechanism], name: str) -> bool:
+    return _pose_dimension(name) is Dimension.ANGLE and not mechanism.counts_turns
 
 
 def _pose_dimension(name: str) -> Dimension:

@@ -101,11 +101,11 @@ def time_cycle(asked: schema.Trajectory, robot: Mechanism) -> Timing:
 
     cycle = there_and_back(robot, path, limits, payload, partial(time_optimal, intervals=asked.grid))
     seconds = time.perf_counter() - started
-    points = cycle_setpoints(cycle, asked.period, robot.joint_units)
+    points = cycle_setpoints(cycle, asked.period, robot.actuator_units)
     approach = None
     if asked.approach is not None:
         approach = plan_approach(
-            robot, points.pose[0], setup.limits_of(asked.approach), payload, asked.period, robot.joint_units
+            robot, points.pose[0], setup.limits_of(asked.approach), payload, asked.period, robot.actuator_units
         )
     return Timing(cycle, points, approach, seconds)
 

@@ -25,6 +25,7 @@ _LINES = {
     "platform": (_COLOURS[1], 3.0),
     "tool": (_COLOURS[2], 2.0),
 }
+_OTHERS = 289  # about how many poses of the other coordinates stand behind a point of a map
 _STYLE: Any = {
     "font.size": 9,
     "axes.titlesize": 10,
@@ -57,7 +58,8 @@ def section_of(problem: Problem, robot: Mechanism, region: Region, margin: str, 
     names = robot.pose_names
     free = [n for n in names if region.intervals[n][0] < region.intervals[n][1]]
     plane, rest = free[:2], free[2:]
-    axes = {n: np.linspace(*region.intervals[n], size if n in plane else 17) for n in free}
+    each = max(3, round(_OTHERS ** (1 / max(1, len(rest)))))
+    axes = {n: np.linspace(*region.intervals[n], size if n in plane else each) for n in free}
     others = np.stack(np.meshgrid(*(axes[n] for n in rest), indexing="ij"), axis=-1).reshape(-1, len(rest))
     first, second = axes[plane[0]], axes[plane[1]]
     poses = np.empty((size, size, len(others), len(names)))
@@ -112,10 +114,10 @@ def map_picture(sections: dict[str, Section], title: str, bound: float | None) -
             low = float(np.nanmin(section.worst))
             if bound is not None and low < bound < np.nanmax(section.worst):
                 axes.contour(section.first, section.second, section.worst, levels=[bound], colors="red")
-            axes.set(title=f"{label}: least {low:.3f} on this grid", xlabel=f"{section.names[0]} [m]")
+            axes.set(title=f"{label}: least {low:.3f} on this grid", xlabel=_axis(section.names[0]))
             axes.set_aspect("equal")
             axes.grid(False)
-        panels[0].set_ylabel(f"{sections[next(iter(sections))].names[1]} [m]")
+        panels[0].set_ylabel(_axis(section.names[1]))
         figure.colorbar(mesh, ax=panels, label=title)
         return _png(figure)
 
@@ -158,6 +160,10 @@ def motion_picture(time: Array, rows: Sequence[tuple[str, Array, Array | None]],
         panels[0].legend(frameon=False, ncols=len(joints), loc="upper right")
         panels[-1].set_xlabel("time [ms]")
         return _png(figure)
+
+
+def _axis(name: str) -> str:
+    return f"{name} [{'m' if name in ('x', 'y', 'z') else 'rad'}]"
 
 
 def _png(figure: Figure) -> bytes:

@@ -127,7 +127,7 @@ def _motion_pictures(timing: Timing) -> Pictures:
     times = np.linspace(0.0, piece.timed.law.duration, 1501)
     motion = motion_along(robot, piece.path, piece.timed.law.at(times), piece.payload)
     count = len(robot.joint_names)
-    unit = "rad" if set(robot.joint_units) == {"rad"} else "SI"
+    unit = "rad" if set(robot.actuator_units) == {"rad"} else "SI"
     rows: list[tuple[str, Any, Any]] = [
         (f"position [{unit}]", motion.joints.position, None),
         (f"speed [{unit}/s]", motion.joints.first, cycle.limits.of_joints("speed", count)),
@@ -136,7 +136,7 @@ def _motion_pictures(timing: Timing) -> Pictures:
     ]
     return [
         ("Path of the half cycle", plots.path_picture(motion.tool.pose, times, robot.pose_names)),
-        ("Joints on the way there, limits dashed", plots.motion_picture(times, rows, robot.joint_names)),
+        ("Joints on the way there, limits dashed", plots.motion_picture(times, rows, robot.actuator_names)),
     ]
 
 

@@ -14,8 +14,9 @@ import numpy as np
 from ruckig import DurationDiscretization, InputParameter, Result, Ruckig, Synchronization, Trajectory
 
 from kinematics import InvalidValue, Mechanism
+from kinematics.drives import from_actuators, to_actuators
 from kinematics.dynamics import inverse_dynamics
-from kinematics.motion import joint_motion
+from kinematics.motion import actuator_motion
 from trajectory.errors import LimitsExceeded, TimingFailed
 from trajectory.limits import Limits
 from trajectory.path import Array
@@ -70,7 +71,7 @@ def plan_approach(
     _require_usable(robot, limits, period)
     ends = np.stack([np.asarray(robot.home if start is None else start, dtype=float), np.asarray(target, dtype=float)])
     robot.require_reachable(ends)
-    joints = robot.inverse(ends)
+    joints = to_actuators(robot, robot.inverse(ends))
     asked = {**limits.as_dict(), "period": period, "start": ends[0].tolist(), "target": ends[1].tolist()}
     plan = _plan(joints, limits, period, asked)
     count = max(1, round(plan.duration / period))  # a period at rest where the target is the start
@@ -88,7 +89,7 @@ def plan_approach(
     header: dict[str, object] = {"mechanism": type(robot).__name__, "geometry hash": robot.geometry.digest}
     header |= {"law": "ruckig", "payload [kg]": payload, "period [s]": float(period), "periods": [count]}
     header |= {f"limit {name}": value for name, value in limits.as_dict().items()}
-    setpoints = Setpoints.of_table(table, robot.joint_names, joint_units, header)
+    setpoints = Setpoints.of_table(table, robot.actuator_names, joint_units, header)
     return Approach(setpoints, count * period, found)
 
 
@@ -135,11 +136,11 @@ def _samples(plan: Trajectory, times: Array) -> tuple[Array, Array, Array]:
 
 def _poses(robot: Mechanism, joints: Array, times: Array, asked: dict[str, object]) -> Array:
     """(k, n) by the forward model; the working mode of every joint must come back."""
-    pose = robot.forward(joints)
+    pose = robot.forward(from_actuators(robot, joints))
     missing = ~np.isfinite(pose).all(axis=-1)
     if missing.any():
         raise TimingFailed("ruckig", asked, f"no pose at t = {times[int(np.argmax(missing))]:.6g} s")
-    away = ~(np.abs(robot.inverse(pose) - joints).max(axis=-1) <= _SAME_JOINTS)
+    away = ~(np.abs(to_actuators(robot, robot.inverse(pose)) - joints).max(axis=-1) <= _SAME_JOINTS)
     if away.any():
         raise TimingFailed("ruckig", asked, f"another working mode at t = {times[int(np.argmax(away))]:.6g} s")
     return pose
@@ -148,9 +149,9 @@ def _poses(robot: Mechanism, joints: Array, times: Array, asked: dict[str, objec
 def _torque(robot: Mechanism, payload: float, pose: Array, dense: tuple[Array, Array, Array]) -> Array:
     """(k, m): the pose's velocity and acceleration solve q' = J v and q'' = J a + J' v."""
     _, speed, acceleration = dense
-    jacobian, none = robot.inverse_jacobian(pose), np.zeros_like(pose)
+    jacobian, none = robot.actuator_jacobian(pose), np.zeros_like(pose)
     velocity = np.linalg.solve(jacobian, speed[..., None])[..., 0]
-    bias = joint_motion(robot, pose, velocity, none, none).second
+    bias = actuator_motion(robot, pose, velocity, none, none).second
     pose_acceleration = np.linalg.solve(jacobian, (acceleration - bias)[..., None])[..., 0]
     return inverse_dynamics(robot, payload, pose, velocity, pose_acceleration)
 

@@ -15,7 +15,8 @@ _JOINT_FIELDS = ("speed", "acceleration", "torque", "jerk")
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits, each the same in both directions; None is no limit. A joint limit is one number or one a joint.
+    """Limits, each the same in both directions; None is no limit. A joint limit is one number or one a joint;
+    where drives couple the joints, as the Peppermill's do, it holds at the actuators.
 
     Attributes:
         speed: of the joints [rad/s or m/s].

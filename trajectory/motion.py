@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from kinematics import Mechanism
 from kinematics.dynamics import inverse_dynamics
-from kinematics.motion import JointMotion, joint_motion
+from kinematics.motion import JointMotion, actuator_motion
 from trajectory.path import Array, Path
 from trajectory.timing import PathMotion
 
@@ -21,7 +21,7 @@ class PoseMotion(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """All that moves: pose, joints and their time derivatives, and torque (..., m)."""
+    """All that moves: pose; joints as their actuators count them, with time derivatives; torque there (..., m)."""
 
     tool: PoseMotion
     joints: JointMotion
@@ -51,4 +51,4 @@ def motion_along(robot: Mechanism, path: Path, along: PathMotion, payload: float
     """
     tool = pose_motion(path, along)
     torque = inverse_dynamics(robot, payload, tool.pose, tool.velocity, tool.acceleration)
-    return Motion(tool, joint_motion(robot, *tool), torque)
+    return Motion(tool, actuator_motion(robot, *tool), torque)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from kinematics import InvalidShape, InvalidValue, Mechanism
+from kinematics.drives import from_actuators
 from trajectory.cycle import Cycle, Piece, periods_of
 from trajectory.motion import Motion, motion_along
 from trajectory.path import POSE_NAMES, Array
@@ -94,7 +95,7 @@ class Setpoints:
         expected = (type(robot).__name__, robot.geometry.digest)
         if found != expected:
             raise InvalidValue("mechanism and geometry of the set-points", found, str(expected))
-        residual = np.abs(robot.closure_residual(self.pose, self.joints))
+        residual = np.abs(robot.closure_residual(self.pose, from_actuators(robot, self.joints)))
         if not residual.max() <= _CONSISTENT:
             row, limb = (int(k) for k in np.unravel_index(int(residual.argmax()), residual.shape))
             what = f"loop closure of set-point {row}, limb {limb + 1} [m^2]"
@@ -123,7 +124,7 @@ def cycle_setpoints(cycle: Cycle, period: float, joint_units: Sequence[str]) -> 
         parts.append(np.concatenate([motion.tool.pose, *motion.joints[:3], motion.torque], axis=1))
     time = np.arange(sum(counts) + 1) * period
     table = np.concatenate([time[:, None], np.concatenate(parts)], axis=1)
-    return Setpoints.of_table(table, cycle.robot.joint_names, joint_units, _header(cycle, whole, period, counts))
+    return Setpoints.of_table(table, cycle.robot.actuator_names, joint_units, _header(cycle, whole, period, counts))
 
 
 def _sampled(cycle: Cycle, piece: Piece, count: int, last: bool) -> Motion:

@@ -26,7 +26,7 @@ from toppra.interpolator import AbstractGeometricPath
 
 from kinematics import InvalidValue, Mechanism
 from kinematics.dynamics import inverse_dynamics
-from kinematics.motion import joint_motion
+from kinematics.motion import actuator_motion
 from trajectory.errors import TimingFailed
 from trajectory.limits import Limits
 from trajectory.path import Array, Path, require_schoenflies, require_smooth
@@ -78,7 +78,7 @@ def _path_limits(
     pose, first, second = derivatives
     count = len(robot.joint_names)
     none = np.zeros_like(pose)
-    joints = joint_motion(robot, pose, first, second, none)
+    joints = actuator_motion(robot, pose, first, second, none)
     speed = limits.of_joints("speed", count)
     with np.errstate(divide="ignore"):  # joints at rest bound nothing; `_solve` refuses what is not finite
         highest = (np.abs(joints.first) / speed).max(axis=-1) ** -2.0

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics import InvalidValue, Mechanism
+from kinematics.drives import from_actuators
 from trajectory.limits import Limits
 from trajectory.motion import Motion, motion_along
 from trajectory.path import Array, Path, require_schoenflies
@@ -151,7 +152,7 @@ def sampling(law: TimeLaw) -> Array:
 def _peaks(
     robot: Mechanism, law: TimeLaw, times: Array, motion: Motion, limits: Limits
 ) -> tuple[tuple[Peak, ...], tuple[str, ...]]:
-    names = robot.joint_names
+    names = robot.actuator_names
 
     def of_joints(quantity: str, values: Array, field: str) -> Peak:
         limit = limits.of_joints(field, len(names))
@@ -184,7 +185,7 @@ def _peaks(
 
 
 def _residuals(robot: Mechanism, path: Path, motion: Motion) -> dict[str, float]:
-    pose, joints = motion.tool.pose, motion.joints.position
+    pose, joints = motion.tool.pose, from_actuators(robot, motion.joints.position)
     knots, knot_joints = pose[:, 0], joints[:, 0]
     by_forward = robot.forward(knot_joints) - knots
     turns = list(robot.rotations)

@@ -83,6 +83,7 @@ class Fake:
     """As much of a mechanism as a study file speaks of."""
 
     pose_names: ClassVar[tuple[str, ...]] = ("x", "y", "z", "theta")
+    counts_turns: ClassVar[bool] = False
     margins: ClassVar[tuple[str, ...]] = ("J_q", "J_x", "fvi", "reach")
 
     @dataclass(frozen=True)

@@ -1,11 +1,13 @@
 """Each fault of a study file is told with its file, key and line."""
 
+import math
 import pickle
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+import kinematics
 from kinematics.errors import LinkwrightError
 from studies.errors import StudyError
 from studies.load import load_study
@@ -214,3 +216,12 @@ def test_a_study_error_survives_pickling(write: Write) -> None:
         load_study(write("a = 1"))
     assert isinstance(caught.value, LinkwrightError)
     assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
+
+
+def test_a_screw_may_turn_further_than_once(write: Write, minimal_text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = minimal_text.replace("theta_deg = 90", "theta_deg = [-360, 360]")
+    path = write(text)
+    with pytest.raises(StudyError, match="at most a turn apart"):
+        load_study(path)
+    monkeypatch.setattr(kinematics.MECHANISMS["Fake"], "counts_turns", True)
+    assert load_study(path).region.coordinates["theta"] == pytest.approx((-2 * math.pi, 2 * math.pi))

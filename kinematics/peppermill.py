@@ -1,0 +1,260 @@
+"""Peppermill (Harada and Angeles, Trans. CSME 2014): two limbs, four identical motors, a platform on two screws.
+
+A pair of motors slides limb i along its drive axis a_i by d_i and turns it about that axis by theta_i; the limbs hold
+the nuts of two coaxial screws of different pitch, so that the difference of their heights turns the platform. Pose
+[x, y, z, theta] with theta the paper's phi, which counts on beyond a turn. Equation numbers are the paper's; where it
+errs, the expression here follows from the closure and the documentation says so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import ClassVar
+
+import casadi as ca
+import numpy as np
+
+from kinematics import peppermill_limbs as limbs
+from kinematics.bodies import Bodies
+from kinematics.drives import from_actuators, to_actuators
+from kinematics.errors import InvalidShape
+from kinematics.geometry import TURN, GeometryRecord, length, screw_pitch
+from kinematics.indices import FviBounds
+from kinematics.interpreter import evaluate
+from kinematics.mechanism import Array, Mechanism
+from kinematics.model import Model
+
+_E_Z = ca.DM([0, 0, 1])
+_SAME_PITCH = 1e-12  # pitches that differ by less than this part of the larger are one pitch and a rounding
+
+
+@dataclass(frozen=True)
+class PeppermillGeometry(GeometryRecord):
+    """The paper gives no dimensions: these serve a 0.4 x 0.4 x 0.1 m box about the origin with a turn either way.
+
+    Raises:
+        InvalidGeometry: also where the two pitches are equal, the architecture singularity of (48).
+    """
+
+    proximal_lengths: tuple[float, ...] = length((0.20, 0.20), doc="r_i, drive axis to elbow")
+    distal_lengths: tuple[float, ...] = length((0.50, 0.50), doc="l_i, elbow to platform")
+    half_distance: float = length(0.50, doc="b_0, origin to either drive axis")
+    pitches: tuple[float, ...] = screw_pitch((0.10, -0.10), doc="p_i, of the platform's screws")
+    drive_pitch: float = screw_pitch(0.10, doc="p_c, of the drives' screws")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        first, second = self.pitches
+        if abs(first - second) <= _SAME_PITCH * max(abs(first), abs(second)):
+            reason = "equal ones are an architecture singularity, det A of (48) is zero in every pose"
+            raise self._invalid("pitches", self.pitches, f"two different pitches: {reason}")
+        if self.drive_pitch < 0.0:
+            raise self._invalid("drive_pitch", self.drive_pitch, "a pitch > 0 m/turn, as (A.2) has it")
+
+
+@dataclass(frozen=True)
+class PeppermillInertia:
+    """A light machine with 750 W servos: an assumption of this project, not a datasheet. SI units.
+
+    Attributes:
+        motor: inertia of each motor with its nut, about its axis.
+        carriage_mass, carriage: what slides along a drive axis, and its inertia about that axis.
+        proximal_mass, proximal_centre, proximal_factor: a proximal link's mass, its centre of mass c as a fraction of
+            r_i, and its inertia about the drive axis over m c^2.
+        distal_mass: a distal link with its pairs, half at each end.
+        nut_mass: each nut of the platform's screws.
+        platform_mass, tool: platform with its screws and tool, and its inertia about e_z; the payload is a point at C.
+    """
+
+    motor: float = 3.0e-4
+    carriage_mass: float = 1.5
+    carriage: float = 1.0e-3
+    proximal_mass: float = 0.5
+    proximal_centre: float = 0.40
+    proximal_factor: float = 1.25
+    distal_mass: float = 0.4
+    nut_mass: float = 0.2
+    platform_mass: float = 0.8
+    tool: float = 6.0e-4
+
+
+class Peppermill(Mechanism):
+    """Pose [x, y, z, theta], joints d1, d2 and theta1, theta2, moved by the motors 1L, 1R, 2L, 2R.
+
+    `inverse_jacobian` and `jacobians` speak of the joints d1, d2 [m], theta1, theta2 [rad]; indices, torques and
+    `actuator_jacobian` of the four identical motors [rad]. J_x is A of (47); J_q is B with r_i folded in, since the
+    paper's joint vector holds r_i dtheta_i.
+    """
+
+    Geometry = PeppermillGeometry
+    Inertia = PeppermillInertia
+    geometry: PeppermillGeometry
+    inertia: PeppermillInertia
+    pose_names = ("x", "y", "z", "theta")
+    joint_names = ("d1", "d2", "theta1", "theta2")
+    joint_units = ("m", "m", "rad", "rad")
+    rotations = (3,)
+    counts_turns = True
+    home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.0, 0.0)
+    # 750 W servos at 3000 rpm and three times their rated torque, asked for 2.5 m/s and 50 N: our assumption.
+    fvi_bounds = FviBounds(joint_speed=314.0, joint_effort=7.2, speed=2.5, force=50.0)
+
+    @property
+    def characteristic_length(self) -> float:
+        """|p_1 - p_2| / (4 pi), that is p / (2 pi) for the paper's opposite pitches: nut travel per angle [m]."""
+        first, second = self.geometry.pitches
+        return abs(first - second) / (2 * TURN)
+
+    # The closure and its closed forms.
+
+    @staticmethod
+    def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """d_i minus (17), (18), then (l_i^2 - |q_i - r_i u_i|^2) / 2 l_i: two rows a limb; (19), (22)."""
+        link = limbs.distal(pose, joints, g)
+        square = link.along_x**2 + link.along_y**2
+        return ca.vertcat(joints[:2] - pose[:2], (g.distal_lengths - square / g.distal_lengths) / 2)
+
+    @staticmethod
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(19), (25) with the + root for both limbs: 0 < lambda_i < pi."""
+        return ca.vertcat(pose[:2], limbs.angles(pose, limbs.ELBOWS[0], g))
+
+    @staticmethod
+    def joint_cosines_and_sines(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """Of theta_i without an angle; d_i stands under no cosine, so its rows are never read."""
+        cosines, sines = limbs.cosines_and_sines(pose, limbs.ELBOWS[0], g)
+        return ca.vertcat(ca.cos(pose[:2]), cosines), ca.vertcat(ca.sin(pose[:2]), sines)
+
+    @staticmethod
+    def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """How much closer or farther P_i could be before it left the two-bar chain's ring [m]."""
+        return limbs.reach(pose, g)
+
+    @staticmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """1 for d_i and r_i for theta_i; |p_2 - p_1| / (2 pi) for det A."""
+        return ca.vertcat(1, 1, g.proximal_lengths), ca.fabs(g.pitches[1] - g.pitches[0]) / TURN
+
+    # The drives.
+
+    @classmethod
+    def drives(cls, g: SimpleNamespace) -> ca.SX:
+        """(4, 4) from d_1, d_2, theta_1, theta_2 to the motors eta_1L, eta_1R, eta_2L, eta_2R; (A.4)."""
+        rate = TURN / g.drive_pitch
+        result = ca.SX(4, 4)
+        for motor, hand in enumerate((1, -1, 1, -1)):
+            result[motor, motor // 2] = hand * rate
+            result[motor, 2 + motor // 2] = 1
+        return result
+
+    @property
+    def actuator_names(self) -> tuple[str, ...]:
+        """The motors: limb, then the hand of the screw."""
+        return ("1L", "1R", "2L", "2R")
+
+    @property
+    def actuator_units(self) -> tuple[str, ...]:
+        """All motors turn."""
+        return ("rad",) * 4
+
+    def motors(self, joints: Array) -> Array:
+        """(..., 4) joints [m, m, rad, rad] -> (..., 4) motor angles [rad]; (A.1)-(A.4)."""
+        return to_actuators(self, joints)
+
+    def from_motors(self, motors: Array) -> Array:
+        """(..., 4) motor angles [rad] -> (..., 4) joints; (A.5), whose first row is +- p_c / 4 pi, not / 2 pi."""
+        return from_actuators(self, motors)
+
+    # All modes.
+
+    def inverse_modes(self, pose: Array) -> Array:
+        """(..., 4) -> (..., 4 modes, 4 joints): elbows (+ +), (+ -), (- +), (- -), working mode first; else NaN."""
+
+        def modes(model: Model) -> list[ca.SX]:
+            columns = [ca.vertcat(model.pose[:2], limbs.angles(model.pose, e, model.g)) for e in limbs.ELBOWS]
+            return [ca.horzcat(*columns).T]
+
+        joints = self._evaluate("inverse_modes", modes, pose)[0]
+        joints[np.isnan(joints).any(axis=(-2, -1))] = np.nan
+        return joints
+
+    def forward_modes(self, joints: Array) -> Array:
+        """(..., 4) -> (..., 4 modes, 4): signs of v_1z, v_2z (+ -), (+ +), (- -), (- +), the working mode first."""
+        program = self.program(
+            "forward_modes",
+            lambda m: ([m.joints], [ca.horzcat(*(limbs.pose_of_joints(m.joints, s, m.g) for s in limbs.SIDES)).T]),
+        )
+        pose = evaluate(program, self._joints(joints))[0]
+        pose[np.isnan(pose).any(axis=(-2, -1))] = np.nan
+        return pose
+
+    def forward(self, joints: Array) -> Array:
+        """(..., 4) -> (..., 4): limb 1 reaches up to the platform, limb 2 down; a NaN row where there is no pose.
+
+        It undoes `inverse` wherever the distal links do so: up to the singularities of the second kind.
+        """
+        program = self.program("forward", lambda m: ([m.joints], [limbs.pose_of_joints(m.joints, limbs.SIDES[0], m.g)]))
+        pose = evaluate(program, self._joints(joints))[0]
+        pose[np.isnan(pose).any(axis=-1)] = np.nan
+        return pose
+
+    def assembly_modes(self, joints: Array) -> Array:
+        """(4,) -> (k, 4), every real pose with these joints, at most four; the working one first."""
+        joints = self._joints(joints)
+        if joints.ndim != 1:
+            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        modes = self.forward_modes(joints)
+        modes = modes[np.isfinite(modes).all(axis=-1)]
+        _, first = np.unique(modes, axis=0, return_index=True)
+        return modes[np.sort(first)]
+
+    # Masses and drawing.
+
+    @staticmethod
+    def points(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
+        """O_i, A_i, B_i, P_i, each (3, 2): drive axes' origins, carriages, elbows, nuts; (3), (4), (9), (11)."""
+        origins = _E_Z @ (g.half_distance * ca.DM([[-1, 1]]))
+        carriages = origins + ca.DM([[1, 0], [0, 1], [0, 0]]) @ ca.diag(joints[:2])
+        theta = joints[2:]
+        proximal = limbs.in_space(limbs.Plane(ca.cos(theta), ca.sin(theta))) @ ca.diag(g.proximal_lengths)
+        nuts = ca.repmat(pose[:3], 1, 2) + _E_Z @ (g.pitches.T / TURN * pose[3])
+        return origins, carriages, carriages + proximal, nuts
+
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+        """Motors, carriages, proximal links, half of the distal ones; nuts with the other half, platform, payload."""
+        i, bodies = self.inertia, Bodies()
+        _, carriages, elbows, nuts = self.points(pose, joints, g)
+        eta = self.drives(g) @ joints
+        bodies.of_joints.rotors.extend([(i.motor, eta[k]) for k in range(4)])
+        for limb in range(2):
+            carriage, link = carriages[:, limb], elbows[:, limb] - carriages[:, limb]
+            centre = i.proximal_centre * g.proximal_lengths[limb]
+            own = (i.proximal_factor - 1) * i.proximal_mass * centre**2  # beyond the particle at the centre of mass
+            bodies.of_joints.particles.extend(
+                [
+                    (i.carriage_mass, carriage),
+                    (i.proximal_mass, carriage + i.proximal_centre * link),
+                    (i.distal_mass / 2, elbows[:, limb]),
+                ]
+            )
+            bodies.of_joints.rotors.append((i.carriage + own, joints[2 + limb]))
+            bodies.of_pose.particles.append((i.nut_mass + i.distal_mass / 2, nuts[:, limb]))
+        bodies.of_pose.particles.append((i.platform_mass + payload, pose[:3]))
+        bodies.of_pose.rotors.append((i.tool, pose[3]))
+        return bodies
+
+    @staticmethod
+    def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
+        """The z axis between the drive axes, these axes, both limbs, the screws and the tool's pointer."""
+        origins, carriages, elbows, nuts = Peppermill.points(pose, joints, g)
+        lines = {"base": origins}
+        for limb in range(2):
+            axis = g.half_distance * ca.DM.eye(3)[:, limb]
+            lines[f"drive axis {limb + 1}"] = ca.horzcat(origins[:, limb] - axis, origins[:, limb] + axis)
+            lines[f"proximal {limb + 1}"] = ca.horzcat(carriages[:, limb], elbows[:, limb])
+            lines[f"distal {limb + 1}"] = ca.horzcat(elbows[:, limb], nuts[:, limb])
+        lines["screws"] = nuts
+        pointer = 0.2 * g.proximal_lengths[0] * ca.vertcat(ca.cos(pose[3]), ca.sin(pose[3]), 0)
+        lines["tool"] = ca.horzcat(pose[:3], pose[:3] + pointer)
+        return lines

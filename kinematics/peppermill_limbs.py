@@ -1,0 +1,93 @@
+"""The Peppermill's two limbs in closed form, each in its own plane.
+
+A limb moves in the plane across its drive axis a_i, spanned by x_i and y_i: (j, k) for limb 1 and (k, i) for limb 2.
+There it is a two-bar chain from A_i to P_i whose proximal link r_i the drive turns by theta_i. All functions work on
+both limbs at once, on (2,) columns; equation numbers are the paper's.
+"""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import NamedTuple
+
+import casadi as ca
+
+from kinematics.geometry import TURN
+
+ELBOWS = ((1, 1), (1, -1), (-1, 1), (-1, -1))  # sign of sin lambda_i, the +- of (25); the working mode first
+SIDES = ((1, -1), (1, 1), (-1, -1), (-1, 1))  # sign of v_iz; working: limb 1 reaches up, limb 2 down
+
+
+class Plane(NamedTuple):
+    """Coordinates of a vector in both limbs' planes, each (2,)."""
+
+    along_x: ca.SX
+    along_y: ca.SX
+
+
+def target(pose: ca.SX, g: SimpleNamespace) -> Plane:
+    """q_i = p_i - d_i a_i [m], from A_i to P_i; (20). In (13) b_0 has the sign that (9), (29), (30) give it."""
+    heights = pose[2] + g.half_distance * ca.DM([1, -1]) + g.pitches / TURN * pose[3]
+    return Plane(ca.vertcat(pose[1], heights[1]), ca.vertcat(heights[0], pose[0]))
+
+
+def _triangle(q: Plane, g: SimpleNamespace) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """|q|^2, -e_3 of (26), sqrt(e_1^2 + e_2^2 - e_3^2) as a product that keeps its digits near straight limbs."""
+    near, far = g.proximal_lengths, g.distal_lengths
+    square = q.along_x**2 + q.along_y**2
+    root = ca.sqrt(((near + far) ** 2 - square) * (square - (near - far) ** 2)) / (2 * near)
+    return square, (square + near**2 - far**2) / (2 * near), root
+
+
+def angles(pose: ca.SX, elbows: tuple[int, int], g: SimpleNamespace) -> ca.SX:
+    """(2,) theta_i; (24)-(26) by two angles, since the half angle of (25) is not defined at pi.
+
+    Continuous wherever limb 1 reaches up and limb 2 down: the cuts lie on the other sides.
+    """
+    q = target(pose, g)
+    _, right, root = _triangle(q, g)
+    direction = ca.vertcat(ca.atan2(q.along_y[0], q.along_x[0]), TURN / 2 + ca.atan2(-q.along_y[1], -q.along_x[1]))
+    return direction - ca.DM(elbows) * ca.atan2(root, right)
+
+
+def cosines_and_sines(pose: ca.SX, elbows: tuple[int, int], g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+    """(2,) and (2,) of `angles`, without an angle."""
+    q = target(pose, g)
+    square, right, root = _triangle(q, g)
+    root = ca.DM(elbows) * root
+    return (q.along_x * right + q.along_y * root) / square, (q.along_y * right - q.along_x * root) / square
+
+
+def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+    """(2,) how far |q_i| is inside [|r_i - l_i|, r_i + l_i] [m]."""
+    q = target(pose, g)
+    distance = ca.sqrt(q.along_x**2 + q.along_y**2)
+    near, far = g.proximal_lengths, g.distal_lengths
+    return ca.fmin(near + far - distance, distance - ca.fabs(near - far))
+
+
+def distal(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> Plane:
+    """l_i v_i = q_i - r_i u_i [m]; (21), (27)."""
+    q, near, theta = target(pose, g), g.proximal_lengths, joints[2:]
+    return Plane(q.along_x - near * ca.cos(theta), q.along_y - near * ca.sin(theta))
+
+
+def pose_of_joints(joints: ca.SX, sides: tuple[int, int], g: SimpleNamespace) -> ca.SX:
+    """(4,) pose; (28)-(35). The sign of v_iz takes the place of the arcsine's and the arccosine's branch.
+
+    The arcsine of (32) has its principal value at v_2z > 0; the working layout needs pi minus it.
+    """
+    near, far, theta = g.proximal_lengths, g.distal_lengths, joints[2:]
+    level = ca.vertcat(joints[1] - near[0] * ca.cos(theta[0]), joints[0] - near[1] * ca.sin(theta[1]))  # l_i v_iy, v_ix
+    proximal = ca.vertcat(near[0] * ca.sin(theta[0]), near[1] * ca.cos(theta[1]))
+    height = proximal + ca.DM(sides) * ca.sqrt((far - level) * (far + level))
+    right = height - g.half_distance * ca.DM([1, -1])
+    p1, p2 = g.pitches[0], g.pitches[1]
+    z = (p1 * right[1] - p2 * right[0]) / (p1 - p2)
+    return ca.vertcat(joints[0], joints[1], z, TURN * (right[0] - right[1]) / (p1 - p2))
+
+
+def in_space(plane: Plane) -> ca.SX:
+    """(3, 2) the vectors of both limbs' planes in the base frame."""
+    (x1, x2), (y1, y2) = ((v[0], v[1]) for v in plane)
+    return ca.horzcat(ca.vertcat(0, x1, y1), ca.vertcat(y2, 0, x2))

@@ -1,0 +1,67 @@
+"""The Peppermill names bad input, or answers NaN rows; it never gives a silent number."""
+
+import numpy as np
+import pytest
+
+from kinematics import InvalidGeometry, InvalidShape, Peppermill, UnreachablePose
+
+
+def test_poses_out_of_reach_are_nan_rows_and_named_on_demand():
+    robot = Peppermill()
+    poses = np.array([[0, 0, 0, 0], [0, 0.3, 0.2, 0], [0, 0, -0.25, 0], [np.nan, 0, 0, 0], [0, 0, np.inf, 0.0]])
+    joints = robot.inverse(poses)
+    np.testing.assert_array_equal(np.isnan(joints).all(axis=-1), [False, True, True, True, True])
+    np.testing.assert_array_equal(np.isnan(joints).any(axis=-1), [False, True, True, True, True])
+    np.testing.assert_array_equal(np.isnan(robot.inverse_modes(poses)).all(axis=(1, 2)), np.isnan(joints[:, 0]))
+    with pytest.raises(UnreachablePose) as caught:
+        robot.require_reachable(poses[:2])
+    assert (caught.value.limb, round(caught.value.margin, 6)) == (1, round(0.7 - np.hypot(0.3, 0.7), 6))
+    with pytest.raises(UnreachablePose) as caught:
+        robot.require_reachable(poses[2])
+    assert caught.value.limb == 2  # h_2 = -0.75; limb 1, folded to 0.25, is no worse
+    assert caught.value.margin == pytest.approx(-0.05)
+
+
+def test_joints_without_a_pose_give_nan_rows():
+    robot = Peppermill()
+    for joints in ([0, 5.0, 0, 0], [5.0, 0, 0, 0], [0, np.nan, 0, 0]):
+        assert np.isnan(robot.forward(np.array(joints))).all()
+        assert np.isnan(robot.forward_modes(np.array(joints))).all()
+
+
+def test_wrong_shapes_are_named():
+    robot = Peppermill()
+    for call in (robot.inverse, robot.inverse_modes, robot.forward, robot.forward_modes, robot.motors):
+        with pytest.raises(InvalidShape):
+            call(np.zeros((5, 3)))
+    with pytest.raises(InvalidShape, match="1L"):
+        robot.from_motors(np.zeros(5))
+    with pytest.raises(InvalidShape):
+        robot.assembly_modes(np.zeros((2, 4)))
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"pitches": (0.1, 0.1)}, "pitches"),
+        ({"pitches": (-0.05, -0.05 * (1 + 1e-14))}, "pitches"),
+        ({"pitches": (0.1, 0.0)}, "pitches"),
+        ({"pitches": (0.1, -0.1, 0.1)}, "pitches"),
+        ({"drive_pitch": -0.1}, "drive_pitch"),
+        ({"drive_pitch": 0.0}, "drive_pitch"),
+        ({"proximal_lengths": (0.2, 0.0)}, "proximal_lengths"),
+        ({"distal_lengths": (-0.5, 0.5)}, "distal_lengths"),
+        ({"half_distance": 0.0}, "half_distance"),
+        ({"half_distance": np.nan}, "half_distance"),
+    ],
+)
+def test_degenerate_geometry_is_refused_by_field(change, field):
+    with pytest.raises(InvalidGeometry) as caught:
+        Peppermill.Geometry(**change)
+    assert caught.value.field == field
+
+
+def test_equal_pitches_are_refused_as_what_they_are():
+    with pytest.raises(InvalidGeometry, match="architecture singularity"):
+        Peppermill.Geometry(pitches=(0.1, 0.1))
+    Peppermill.Geometry(pitches=(0.1, 0.1 + 1e-6))  # poor, but not singular
