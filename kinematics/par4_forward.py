@@ -45,10 +45,10 @@ class Circle(NamedTuple):
 
     @classmethod
     def of(cls, first: Array, second: Array) -> Circle:
-        """Of two spheres with centres (k, 3) of which one is not above the other."""
+        """Of two spheres with centres (k, 3), neither above the other."""
         n, middle = second - first, (first + second) / 2
         flat, square = n[:, 0] + 1j * n[:, 1], np.sum(n * n, axis=1)
-        level = np.where(flat == 0.0, np.nan, np.abs(flat))
+        level = np.abs(flat)
         return cls(
             middle[:, 0] + 1j * middle[:, 1], middle[:, 2], -n[:, 2] * flat / level**2, 1j * flat / level,
             1 - square / 4, square / level**2,
@@ -68,9 +68,12 @@ def candidates(problem: Halves, every: bool) -> tuple[Array, Array]:
         every: look at the octic's stationary points too, where symmetry gives two placements the same height.
 
     Returns:
-        rows (j,): which problem; (j, 2, 3) the two bodies' points. Some appear twice, some may prove wrong.
+        rows (j,): which problem; (j, 2, 3) the two bodies' points. Some appear twice, some may prove wrong. None where
+        of a body's spheres one is above the other.
     """
-    c = problem.centres
+    apart = np.abs(problem.centres[:, 1::2, :2] - problem.centres[:, ::2, :2]).max(axis=2)
+    posed = np.flatnonzero(np.isfinite(problem.centres).all(axis=(1, 2)) & (apart > 0.0).all(axis=1))
+    c = problem.centres[posed]
     circles = Circle.of(c[:, 0], c[:, 1]), Circle.of(c[:, 2], c[:, 3])
     origin = (circles[0].height + circles[1].height) / 2
     octic = _octic(circles, origin, problem.bar)
@@ -91,7 +94,7 @@ def candidates(problem: Halves, every: bool) -> tuple[Array, Array]:
         good = np.abs(np.abs(h[1] - h[0]) ** 2 - problem.bar**2) < _CANDIDATE
         points = np.stack([np.stack([p.real, p.imag, z], axis=-1) for p in h], axis=1)
         found.append((rows[good], points[good]))
-    return np.concatenate([f[0] for f in found]), np.concatenate([f[1] for f in found])
+    return posed[np.concatenate([f[0] for f in found])], np.concatenate([f[1] for f in found])
 
 
 def _octic(circles: tuple[Circle, Circle], origin: Array, bar: float) -> Array:
