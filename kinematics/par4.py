@@ -167,7 +167,7 @@ class Par4(RotaryLimbs):
             step = np.linalg.solve(safe, np.nan_to_num(error)[..., None])[..., 0]
             poses = poses + np.where(regular[:, None], step, 0.0)
         error = np.abs(evaluate(program, poses, joints)[0]).max(axis=1)
-        return np.where((error <= 1e-12 * size)[:, None], poses, np.nan)
+        return np.where((error <= 1e-14 * size)[:, None], poses, np.nan)
 
     def forward(self, joints: Array) -> Array:
         """(..., 4) -> (..., 4): the lowest of the modes."""
@@ -180,7 +180,7 @@ class Par4(RotaryLimbs):
         while rows.size:  # once, unless the lowest candidate proves wrong
             lowest = np.flatnonzero(np.diff(rows, prepend=-1))
             here = rows[lowest]
-            result[here] = self._polished(poses[lowest], flat[here], 3)
+            result[here] = self._polished(poses[lowest], flat[here], 4)
             left = np.isnan(result[rows, 0])
             left[lowest] = False
             rows, poses = rows[left], poses[left]
@@ -192,7 +192,7 @@ class Par4(RotaryLimbs):
         if joints.ndim != 1:
             raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
         _, poses = self._candidates(joints[None], every=True)
-        poses = self._polished(poses, np.broadcast_to(joints, poses.shape), 12)
+        poses = self._polished(poses, np.broadcast_to(joints, poses.shape), 20)
         poses = poses[np.isfinite(poses).all(axis=1)]
         poses = poses[np.argsort(poses[:, 2], kind="stable")]
         turn = np.exp(1j * poses[:, 3] / self.geometry.amplification)

@@ -21,7 +21,7 @@ Array = np.ndarray
 
 _CHART = 1.1  # each of tan and cot serves up to here; between 1 / 1.1 and 1.1 both do
 _CANDIDATE = 1e-5  # error of the third circle, over the size squared, from where Newton's method starts
-_CLOSED = 1e-12  # the same where it has converged
+_CLOSED = 4e-15  # the same where it has converged, to rounding: between near solutions less would not tell
 _BLOCK = 50_000  # rows at a time
 
 
@@ -56,7 +56,8 @@ def _placements(centres: Array, radii: Array, points: Array, every: bool) -> tup
     good = (radii >= 0.0).all(axis=1) & np.isfinite(size)
     size = np.where(good, size, 1.0)
     rows, theta = _angles(np.where(good[:, None], _sextic(centres, radii, points), np.nan), every)
-    c, r, b = centres[rows] / size[rows, None], radii[rows] / size[rows, None], points / size[rows, None]
+    c = (centres - centres[:, :1])[rows] / size[rows, None]
+    r, b = radii[rows] / size[rows, None], (points - points[0]) / size[rows, None]
     turned = np.exp(1j * theta)[:, None] * b
     d = c[:, 1:] - c[:, :1] - turned[:, 1:] + turned[:, :1]
     far = np.abs(d[:, 0]) < np.abs(d[:, 1])  # the farther of the circles 2 and 3 meets circle 1 more sharply
@@ -68,11 +69,11 @@ def _placements(centres: Array, radii: Array, points: Array, every: bool) -> tup
     for side in (1.0, -1.0):
         q = np.divide((f + side * 1j * height) * d[:, 0], square, out=np.full(len(f), np.nan + 0j), where=square > 0.0)
         near = np.abs(np.abs(q - d[:, 1]) ** 2 - others[:, 1] ** 2) < _CANDIDATE
-        start = (q + c[:, 0] - turned[:, 0])[near]
-        p, angle, error = _polished(start, theta[near], c[near], r[near], b[near], 12 if every else 3)
+        p, angle, error = _polished(q[near], theta[near], c[near], r[near], b[near], 20 if every else 4)
         closed = error <= _CLOSED
         place = rows[near][closed]
-        result.append((place, p[closed] * size[place], np.angle(np.exp(1j * angle[closed]))))
+        turn = np.exp(1j * angle[closed])
+        result.append((place, p[closed] * size[place] + centres[place, 0] - turn * points[0], np.angle(turn)))
     first, second = result
     return (
         np.concatenate([first[0], second[0]]),
