@@ -71,8 +71,10 @@ class HexaInertia(ArmInertia):
 
 
 class Hexa(RotaryLimbs):
-    """Pose [x, y, z, roll, pitch, yaw] and twist as for the Gough-Stewart platform, joints q1..q6 measured from e_z
-    outward; elbows out."""
+    """Pose [x, y, z, roll, pitch, yaw], joints q1..q6 measured from e_z outward; elbows out.
+
+    Orientation and twist are the Gough-Stewart platform's.
+    """
 
     Geometry = HexaGeometry
     Inertia = HexaInertia

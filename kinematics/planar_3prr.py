@@ -23,7 +23,7 @@ class Planar3PRRGeometry(PlanarGeometry):
 
 
 class Planar3PRR(Planar):
-    """Legs of a prismatic drive and two passive pivots; joints are the sliders' travels from A_i along their rails.
+    """Pose [x, y, theta], joints q1..q3, the sliders' travels from A_i along their rails.
 
     Working mode: each slider on the lower side, its rod leading up the rail to the platform.
     """

@@ -23,7 +23,7 @@ class Planar3RPRGeometry(PlanarGeometry):
 
 
 class Planar3RPR(Planar):
-    """Legs of a passive pivot, a prismatic drive and a passive pivot; joints are the leg lengths |A_i B_i|."""
+    """Pose [x, y, theta], joints q1..q3, the leg lengths |A_i B_i|: prismatic drives between passive pivots."""
 
     Geometry = Planar3RPRGeometry
     Inertia = PlanarInertia

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import matplotlib as mpl
@@ -60,7 +61,7 @@ def section_of(problem: Problem, robot: Mechanism, region: Region, margin: str, 
     plane, rest = free[:2], free[2:]
     each = max(3, round(_OTHERS ** (1 / max(1, len(rest)))))
     axes = {n: np.linspace(*region.intervals[n], size if n in plane else each) for n in free}
-    others = np.stack(np.meshgrid(*(axes[n] for n in rest), indexing="ij"), axis=-1).reshape(-1, len(rest))
+    others = np.array(list(product(*(axes[n] for n in rest))))  # one, of no coordinate, where only two are free
     first, second = axes[plane[0]], axes[plane[1]]
     poses = np.empty((size, size, len(others), len(names)))
     for k, name in enumerate(names):
