@@ -41,7 +41,7 @@ class Planar3RRRInertia(PlanarInertia):
 class Planar3RRR(Planar, RotaryLimbs):
     """Pose [x, y, theta], joints q1..q3, the arms' angles from `zero_angles`.
 
-    Working mode: seen from B_i, the elbow is on the right of the line to A_i; with arms counted from outward, as the
+    Working mode: seen from B_i, the elbow is on the left of the line to A_i; with arms counted from outward, as the
     defaults are, each elbow lies ahead counter-clockwise and q_i is between 0 and pi around home.
     """
 
