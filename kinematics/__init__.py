@@ -14,11 +14,11 @@ from kinematics.peppermill import Peppermill
 from kinematics.planar_3prr import Planar3PRR
 from kinematics.planar_3rpr import Planar3RPR
 from kinematics.planar_3rrr import Planar3RRR
+from kinematics.redundant_3t1r import Redundant3T1R
 
-MECHANISMS: dict[str, type[Mechanism]] = {
-    cls.__name__: cls
-    for cls in (Heli4, Peppermill, GoughStewart, Planar3RPR, Planar3PRR, Planar3RRR, Delta, Hexa, Par4)
-}
+_MAIN = (Heli4, Redundant3T1R, Peppermill, GoughStewart)
+_FAMILY = (Planar3RPR, Planar3PRR, Planar3RRR, Delta, Hexa, Par4)
+MECHANISMS: dict[str, type[Mechanism]] = {cls.__name__: cls for cls in (*_MAIN, *_FAMILY)}
 
 __all__ = [
     "MECHANISMS",
@@ -38,6 +38,7 @@ __all__ = [
     "Planar3PRR",
     "Planar3RPR",
     "Planar3RRR",
+    "Redundant3T1R",
     "SingularArchitecture",
     "UnreachablePose",
 ]

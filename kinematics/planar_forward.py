@@ -53,11 +53,11 @@ def rods_and_determinant(p: Array, theta: Array, centres: Array, points: Array) 
 
 def _placements(centres: Array, radii: Array, points: Array, every: bool) -> tuple[Array, Array, Array]:
     size = np.abs(centres - centres[:, :1]).max(axis=1) + np.abs(points - points[0]).max() + radii.max(axis=1)
-    good = (radii >= 0.0).all(axis=1) & np.isfinite(size)
-    size = np.where(good, size, 1.0)
-    rows, theta = _angles(np.where(good[:, None], _sextic(centres, radii, points), np.nan), every)
-    c = (centres - centres[:, :1])[rows] / size[rows, None]
-    r, b = radii[rows] / size[rows, None], (points - points[0]) / size[rows, None]
+    posed = np.flatnonzero((radii >= 0.0).all(axis=1) & np.isfinite(size))
+    unit = size[posed, None]
+    c, r, b = (centres - centres[:, :1])[posed] / unit, radii[posed] / unit, (points - points[0]) / unit
+    rows, theta = _angles(_sextic(c, r, b), every)
+    c, r, b, rows = c[rows], r[rows], b[rows], posed[rows]
     turned = np.exp(1j * theta)[:, None] * b
     d = c[:, 1:] - c[:, :1] - turned[:, 1:] + turned[:, :1]
     far = np.abs(d[:, 0]) < np.abs(d[:, 1])  # the farther of the circles 2 and 3 meets circle 1 more sharply
@@ -83,12 +83,15 @@ def _placements(centres: Array, radii: Array, points: Array, every: bool) -> tup
 
 
 def _sextic(centres: Array, radii: Array, points: Array) -> Array:
-    """(k, 7) in tan(theta / 2), highest power first."""
-    c, b = centres[:, 1:] - centres[:, :1], points[1:] - points[0]
+    """(k, 3) each -> (k, 7) in tan(theta / 2), highest power first."""
+    c, b = centres[:, 1:] - centres[:, :1], points[:, 1:] - points[:, :1]
     own = c.conj() * b
-    square = [_half_angle(abs(c[:, k]) ** 2 + abs(b[k]) ** 2, -2 * own[:, k].real, 2 * own[:, k].imag) for k in (0, 1)]
+    square = [
+        _half_angle(np.abs(c[:, k]) ** 2 + np.abs(b[:, k]) ** 2, -2 * own[:, k].real, 2 * own[:, k].imag)
+        for k in (0, 1)
+    ]
     mixed = c[:, ::-1].conj() * b  # conj(c_3) b_2, conj(c_2) b_3
-    across, along = c[:, 0].conj() * c[:, 1], b[0].conj() * b[1]
+    across, along = c[:, 0].conj() * c[:, 1], b[:, 0].conj() * b[:, 1]
     dot = _half_angle((across + along).real, -mixed.real.sum(axis=1), mixed.imag.sum(axis=1))
     cross = _half_angle((across + along).imag, mixed[:, 0].imag - mixed[:, 1].imag, mixed[:, 0].real - mixed[:, 1].real)
     one = np.array([[1.0, 0.0, 1.0]])

@@ -13,9 +13,10 @@ from studies.errors import KeyPath
 
 
 class Dimension(StrEnum):
-    """What a key measures; the first four are also said by a mechanism's geometry."""
+    """What a key measures; the first five are also said by a mechanism's geometry."""
 
     NONE = "none"
+    FRAME = "frame"
     LENGTH = "length"
     ANGLE = "angle"
     LENGTH_PER_TURN = "length_per_turn"
