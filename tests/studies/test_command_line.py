@@ -25,6 +25,7 @@ import tomli_w
 from studies.check import check_study, compare
 from studies.errors import StudyError
 from studies.load import load_study
+from studies.locate import study_names
 from studies.optimum import read_optimum
 from studies.pipeline import run
 from trajectory import read_setpoints
@@ -146,11 +147,16 @@ def test_a_run_is_reproducible_from_the_study_alone(small_run: SmallRun, tmp_pat
         assert (tmp_path / "out" / name).read_text() == (small_run[0] / "out" / name).read_text()
 
 
-def test_check_accepts_what_was_committed(small_run: SmallRun) -> None:
-    for study in ("heli4", small_run[0]):
-        ended = linkwright("check", study)
-        assert ended.returncode == 0, ended.stdout + ended.stderr
-        assert "all holds" in ended.stdout
+def test_check_accepts_every_committed_optimum() -> None:
+    ended = linkwright("check", "--json")
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    assert set(json.loads(ended.stdout)["studies"]) == set(study_names())
+
+
+def test_check_accepts_what_a_run_committed(small_run: SmallRun) -> None:
+    ended = linkwright("check", small_run[0])
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    assert "all holds" in ended.stdout
 
 
 def leaves(node: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
