@@ -87,7 +87,7 @@ def section_of(problem: Problem, robot: Mechanism, region: Region, margin: str, 
 def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
     """Each robot in 3-D at its home pose, in the same scale, with the workspace's edge."""
     with mpl.rc_context(_STYLE):
-        figure = Figure(figsize=(5.2 * len(robots), 4.8), layout="constrained")
+        figure = Figure(figsize=(5.6 * len(robots), 4.2))
         drawn = {label: robot.polylines(np.array(robot.home)) for label, robot in robots.items()}
         box = _common_box([line for lines in drawn.values() for line in lines.values()] + region.outline())
         for k, (label, lines) in enumerate(drawn.items(), start=1):
@@ -101,7 +101,7 @@ def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
             axes.set(title=label, xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
             axes.set(xlim=box[0], ylim=box[1], zlim=box[2])
             axes.set_aspect("equal")
-            axes.set_box_aspect(None, zoom=0.85)  # else the z label is cut off
+            axes.set_box_aspect(None, zoom=1.1)
             axes.view_init(elev=18, azim=-60)
         return _png(figure)
 
