@@ -1,6 +1,8 @@
 """Mechanisms as loop closures, and all that follows from them."""
 
+from kinematics.architectures import ARCHITECTURES, Architecture, loop_mobility, mobility_of_identical_chains
 from kinematics.delta import Delta
+from kinematics.dynamics import inverse_dynamics
 from kinematics.errors import InvalidGeometry, InvalidShape, InvalidValue, LinkwrightError, UnreachablePose
 from kinematics.gough_stewart import GoughStewart
 from kinematics.gough_stewart_geometry import SingularArchitecture
@@ -9,6 +11,8 @@ from kinematics.heli4 import Heli4
 from kinematics.hexa import Hexa
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Mechanism
+from kinematics.mobility import JointGraph
+from kinematics.motion import actuator_motion, joint_motion
 from kinematics.par4 import Par4
 from kinematics.peppermill import Peppermill
 from kinematics.planar_3prr import Planar3PRR
@@ -21,7 +25,9 @@ _FAMILY = (Planar3RPR, Planar3PRR, Planar3RRR, Delta, Hexa, Par4)
 MECHANISMS: dict[str, type[Mechanism]] = {cls.__name__: cls for cls in (*_MAIN, *_FAMILY)}
 
 __all__ = [
+    "ARCHITECTURES",
     "MECHANISMS",
+    "Architecture",
     "Delta",
     "FviBounds",
     "GoughStewart",
@@ -30,6 +36,7 @@ __all__ = [
     "InvalidGeometry",
     "InvalidShape",
     "InvalidValue",
+    "JointGraph",
     "LinkwrightError",
     "LostPaths",
     "Mechanism",
@@ -41,4 +48,9 @@ __all__ = [
     "Redundant3T1R",
     "SingularArchitecture",
     "UnreachablePose",
+    "actuator_motion",
+    "inverse_dynamics",
+    "joint_motion",
+    "loop_mobility",
+    "mobility_of_identical_chains",
 ]

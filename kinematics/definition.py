@@ -106,4 +106,4 @@ class Definition(ABC):
 
     @abstractmethod
     def forward(self, joints: Array) -> Array:
-        """(..., m) -> (..., n), the working assembly mode; NaN where there is none."""
+        """(..., m) joints -> (..., n) pose in the working assembly mode; a NaN row where no pose has these joints."""

@@ -1,4 +1,4 @@
-"""Errors carry their data, so that a message can name what was asked, what was found and what to change."""
+"""The errors of this project; each keeps its data beside its message."""
 
 from __future__ import annotations
 

@@ -52,9 +52,7 @@ class Mechanism(Definition):
 
     def inverse(self, pose: Array) -> Array:
         """(..., n) -> (..., m) joints of the working mode; a NaN row where a limb cannot reach."""
-        (joints,) = self._evaluate("inverse", lambda model: [model.inverse], pose)
-        joints[np.isnan(joints).any(axis=-1)] = np.nan
-        return joints
+        return self._evaluate("inverse", lambda model: [model.inverse], pose)[0]
 
     def closure_residual(self, pose: Array, joints: Array) -> Array:
         """(..., n), (..., m) -> (..., m) the loop closure; zero when they belong together."""
@@ -69,9 +67,11 @@ class Mechanism(Definition):
             diagonal, j_x = self._evaluate("jacobians", lambda model: [model.j_q_at_pose, model.j_x_at_pose], pose)
         else:
             program = self.program("jacobians_of_joints", lambda m: ([m.pose, m.joints], [m.j_q, m.j_x]))
-            diagonal, j_x = evaluate(program, *self._together(self._poses(pose), self._joints(joints)))
+            both = self._together(self._poses(pose), self._joints(joints))
+            diagonal, j_x = _blanked(both[0], evaluate(program, *both))
         j_q = np.zeros((*diagonal.shape, diagonal.shape[-1]))
         j_q[..., range(diagonal.shape[-1]), range(diagonal.shape[-1])] = diagonal
+        j_q[np.isnan(diagonal).any(axis=-1)] = np.nan
         return j_q, j_x
 
     def inverse_jacobian(self, pose: Array) -> Array:
@@ -199,8 +199,10 @@ class Mechanism(Definition):
         return length
 
     def _evaluate(self, key: object, expressions: Callable[[Model], object], pose: Array) -> list[Array]:
+        """All outputs at each pose; NaN as a whole where the pose is NaN or any of them has no value."""
         pose = self._poses(pose)
-        return evaluate(self.program(key, lambda m: ([m.pose], list(expressions(m)))), pose)  # type: ignore[call-overload]
+        program = self.program(key, lambda m: ([m.pose], list(expressions(m))))  # type: ignore[call-overload]
+        return _blanked(pose, evaluate(program, pose))
 
     def program(self, key: object, build: Callable[[Model], Build]) -> Program:
         """A program with this robot's numbers in place of the geometry's symbols; built at first use."""
@@ -220,11 +222,26 @@ class Mechanism(Definition):
 
     @staticmethod
     def _together(first: Array, second: Array) -> tuple[Array, Array]:
-        lead = np.broadcast_shapes(first.shape[:-1], second.shape[:-1])
+        try:
+            lead = np.broadcast_shapes(first.shape[:-1], second.shape[:-1])
+        except ValueError:
+            found = f"leading shapes {first.shape[:-1]} and {second.shape[:-1]}"
+            raise InvalidValue("poses and joints", found, "shapes that go together") from None
         return (
             np.broadcast_to(first, (*lead, first.shape[-1])),
             np.broadcast_to(second, (*lead, second.shape[-1])),
         )
+
+
+def _blanked(pose: Array, results: list[Array]) -> list[Array]:
+    lost = np.isnan(pose).any(axis=-1)
+    parts = [r.reshape(*lost.shape, -1) if r.size else r for r in results]
+    for part in parts:
+        if part.size:
+            lost = lost | np.isnan(part).any(axis=-1)
+    for result in results:
+        result[lost] = np.nan
+    return results
 
 
 def checked(values: Array, what: str, names: tuple[str, ...]) -> Array:
@@ -232,8 +249,15 @@ def checked(values: Array, what: str, names: tuple[str, ...]) -> Array:
 
     Raises:
         InvalidShape: the last axis does not match.
+        InvalidValue: they are not all real numbers.
     """
-    array = np.asarray(values, dtype=float)
+    try:
+        given = np.asarray(values)
+        if given.dtype.kind not in "biuf":
+            raise ValueError
+    except ValueError:
+        raise InvalidValue(what, f"{values!r:.80}", f"an array of real numbers (..., {len(names)})") from None
+    array = given.astype(float, copy=False)
     if array.ndim == 0 or array.shape[-1] != len(names):
         raise InvalidShape(what, names, array.shape)
     return array

@@ -19,7 +19,7 @@ from studies.toml_file import TomlFile, read_toml
 
 FILE = "optimum.toml"
 GIVEN = "geometry given by the study"
-_TABLES = ("made_by", "geometry", "figures", "worst_pose", "cycle")
+_TABLES = ("made_by", "geometry", "figures", "worst_pose")
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Optimum:
     Attributes:
         data: `mechanism`, `active` (what holds the optimum back) and the tables `made_by`, `geometry` (by the fields'
             names), `figures` (worst value of each margin; the prototype's objective as `prototype`), `worst_pose`
-            (where each one is) and `cycle` (empty where the study asks for none).
+            (where each one is) and, where the study asks for one, `cycle`.
         file: where it was read from.
     """
 
@@ -90,7 +90,7 @@ def optimum_of(outcome: Outcome) -> Optimum:
             "geometry": outcome.robot.geometry.as_dict(),
             "figures": figures,
             "worst_pose": {m: [round(float(v), 9) + 0.0 for v in w.pose] for m, w in outcome.worst.items()},
-            "cycle": outcome.cycle_figures(),
+            **({"cycle": cycle} if (cycle := outcome.cycle_figures()) else {}),
         }
     )
 

@@ -1,6 +1,6 @@
 """A cycle: the way there and the way back, each timed from rest to rest.
 
-A path that reverses has a cusp there, which no law of one piece may cross, so each way is its own piece.
+At the turning point the tangent jumps, and no single law may pass that at speed: each way is a piece of its own.
 """
 
 from __future__ import annotations

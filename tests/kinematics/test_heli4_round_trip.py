@@ -13,6 +13,7 @@ def assert_round_trip(robot: Heli4, poses: np.ndarray, joint_error: float = 1e-1
     found = robot.forward(joints)
     assert np.abs(robot.inverse(found) - joints).max() < joint_error
     assert np.abs(found - poses)[:, :3].max() < 1e-12
+    assert np.abs(found - poses)[:, 3].max() < 1e-11
     assert np.abs(ByHand(robot.geometry).gaps(found, joints)).max() < 1e-14
 
 
