@@ -8,8 +8,9 @@ from kinematics.heli4 import Heli4
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Mechanism
 from kinematics.peppermill import Peppermill
+from kinematics.redundant_3t1r import Redundant3T1R
 
-MECHANISMS: dict[str, type[Mechanism]] = {cls.__name__: cls for cls in (Heli4, Peppermill, GoughStewart)}
+MECHANISMS: dict[str, type[Mechanism]] = {cls.__name__: cls for cls in (Heli4, Redundant3T1R, Peppermill, GoughStewart)}
 
 __all__ = [
     "MECHANISMS",
@@ -23,6 +24,7 @@ __all__ = [
     "LostPaths",
     "Mechanism",
     "Peppermill",
+    "Redundant3T1R",
     "SingularArchitecture",
     "UnreachablePose",
 ]

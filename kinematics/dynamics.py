@@ -2,7 +2,9 @@
 
 The rigid-body model of a mechanism is a list of particles and rotors, each moved either by the joints or by the pose;
 a rod's mass is split between its two ends, so that every mass belongs to one side. With Q_q and Q_x the inertia and
-weight forces on both sides, virtual work gives J_m^T (tau - Q_q) = Q_x. Actuators = C joints then bear C^-T tau.
+weight forces on both sides, virtual work gives J_m^T (tau - Q_q) = Q_x. With more joints than freedoms many tau do:
+each drive moves its own side, and what the platform needs is shared with the least norm,
+tau = Q_q + J_m (J_m^T J_m)^-1 Q_x. Actuators = C joints then bear C^-T tau.
 """
 
 from __future__ import annotations
@@ -55,6 +57,10 @@ def _torques(robot: Mechanism, model: Model, payload: float, rates: list[ca.SX])
     along = derivatives_along(model.inverse, model.pose, rates)[1:]
     on_joints = ca.substitute(on_joints, ca.vertcat(*joint_rates), ca.vertcat(*along))
     on_pose = robot.pose_rate_map(model.pose).T @ _generalised_force(bodies.of_pose, model.pose, rates)
+    if model.joints.shape[0] > model.pose.shape[0]:
+        j_m = model.inverse_jacobian
+        cofactors, det = adjugate(j_m.T @ j_m)
+        return on_joints + j_m @ (cofactors @ on_pose) / det
     # J_q^-T sits outside the solve, so that a limb near its reach does not spoil the others.
     transposed, det = adjugate(model.j_x_at_pose.T)
     return on_joints + model.j_q_at_pose * (transposed @ on_pose) / det

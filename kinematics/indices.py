@@ -9,10 +9,11 @@ a characteristic length turns rotations into lengths.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 
 import casadi as ca
 
-from kinematics.linear import adjugate
+from kinematics.linear import Minors, adjugate
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,31 @@ def isotropic_components(j_mw: ca.SX) -> tuple[ca.SX, ca.SX]:
         columns = cofactors @ j_mw.T
     forces = [ca.fabs(det) / ca.norm_2(columns[:, i]) for i in range(m)]
     return ca.vertcat(*speeds), ca.vertcat(*forces)
+
+
+def force_capability_components(j_mw: ca.SX) -> ca.SX:
+    """Distances from the origin to the facets of the zonotope of forces J_mw^T tau, |tau_i| <= 1.
+
+    A facet is parallel to n - 1 of the rows j_i of J_mw: its normal u is their generalised cross product, its distance
+    sum_i |j_i . u| / |u|. The smallest is the radius of the largest ball of forces that some joint efforts within
+    their limits give. Rows that depend on each other span no facet and give infinity.
+
+    Args:
+        j_mw: (m, n) homogeneous inverse Jacobian, m >= n.
+
+    Returns:
+        (k,) with k the number of ways to choose n - 1 of m rows.
+    """
+    m, n = j_mw.shape
+    minors, distances = Minors(j_mw), []
+    for rows in combinations(range(m), n - 1):
+        columns = [tuple(c for c in range(n) if c != k) for k in range(n)]
+        normal = ca.vertcat(*((-1) ** k * minors.minor(rows, columns[k]) for k in range(n)))
+        size = ca.norm_2(normal)
+        others = [i for i in range(m) if i not in rows]
+        distance = ca.sum1(ca.fabs(j_mw[others, :] @ normal)) / size
+        distances.append(ca.if_else(size <= 0, ca.inf, distance))
+    return ca.vertcat(*distances)
 
 
 def fvi_components(j_mw: ca.SX, bounds: FviBounds) -> ca.SX:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import casadi as ca
 
 
@@ -36,6 +38,18 @@ def determinant(matrix: ca.SX) -> ca.SX:
     """Determinant of a square matrix by shared minors."""
     everything = tuple(range(matrix.shape[0]))
     return Minors(matrix).minor(everything, everything)
+
+
+def volume(matrix: ca.SX) -> ca.SX:
+    """sqrt(det(A^T A)) of an m x n matrix, m >= n: the product of its singular values, |det A| where it is square.
+
+    By Cauchy and Binet it is the norm of all n x n minors, which keeps the digits that forming A^T A would lose.
+    """
+    m, n = matrix.shape
+    if m == n:
+        return ca.fabs(determinant(matrix))
+    minors, columns = Minors(matrix), tuple(range(n))
+    return ca.norm_2(ca.vertcat(*(minors.minor(rows, columns) for rows in combinations(range(m), n))))
 
 
 def adjugate(matrix: ca.SX) -> tuple[ca.SX, ca.SX]:

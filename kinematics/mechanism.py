@@ -17,9 +17,16 @@ import numpy as np
 from kinematics.bodies import Bodies
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.geometry import GeometryRecord
-from kinematics.indices import FviBounds, fvi_components, homogeneous, isotropic_components, smallest
+from kinematics.indices import (
+    FviBounds,
+    force_capability_components,
+    fvi_components,
+    homogeneous,
+    isotropic_components,
+    smallest,
+)
 from kinematics.interpreter import bulk, evaluate
-from kinematics.linear import determinant
+from kinematics.linear import volume
 from kinematics.model import Model, model_of
 from kinematics.program import Program
 
@@ -72,7 +79,10 @@ class Mechanism(ABC):
     @staticmethod
     @abstractmethod
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
-        """What J_q's diagonal (m,) and det J_x are divided by, so that both lie in [-1, 1]."""
+        """What J_q's diagonal (m,) and det J_x are divided by, so that both lie in [-1, 1].
+
+        With m > n it is sqrt(det J_x^T J_x) that takes the determinant's place.
+        """
 
     @abstractmethod
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
@@ -175,6 +185,18 @@ class Mechanism(ABC):
         speed, force = self._evaluate(("isotropic", length), worst, pose)
         return speed[..., 0], force[..., 0]
 
+    def force_capability(self, pose: Array, characteristic_length: float | None = None) -> Array:
+        """(...,) largest force in every direction for unit actuator effort, over all shares of the efforts.
+
+        With m = n it is f_w; with m > n it is larger, as f_w admits minimum-norm efforts only.
+        """
+        length = self._length(characteristic_length)
+
+        def radius(model: Model) -> list[ca.SX]:
+            return [smallest(force_capability_components(self._homogeneous(model, length)))]
+
+        return self._evaluate(("capability", length), radius, pose)[0][..., 0]
+
     def fvi(self, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None) -> Array:
         """(...,) min(v_w / v_wl, f_w / f_wl); Shayya et al. (39). NaN where the pose is out of reach."""
         return self.margin("fvi", pose, bounds, characteristic_length)
@@ -218,7 +240,7 @@ class Mechanism(ABC):
             return fvi_components(self._homogeneous(model, characteristic_length), bounds)
         q_scale, x_scale = self.scales(model.g)
         if name == "det_J_x":
-            return ca.fabs(determinant(model.j_x_at_pose)) / x_scale
+            return volume(model.j_x_at_pose) / x_scale
         normalised = ca.fabs(model.j_q_at_pose) / q_scale
         if name == "J_q":
             return normalised

@@ -38,7 +38,7 @@ class RodLevel(Mechanism):
     @staticmethod
     @abstractmethod
     def rod_closure(pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(k,) half of |A_ij B_ij|^2 - l^2 after a small displacement in the directions of `rod_velocities`."""
+        """(k,) each rod's own `closure` after a small displacement in the directions of `rod_velocities`."""
 
     @classmethod
     @abstractmethod
@@ -47,7 +47,7 @@ class RodLevel(Mechanism):
 
     @classmethod
     def rod_system_symbolic(cls) -> tuple[ca.SX, ca.SX]:
-        """J_l (k, m) and J_r (k, k) of (49) at a pose, by differentiation of the rods' lengths."""
+        """J_l (k, m) and J_r (k, v) of (49) at a pose, by differentiation of the rods' lengths."""
         model = cls.model()
         displacement = ca.SX.sym("displacement", len(cls.rod_velocities))
         rods = cls.rod_closure(model.pose, displacement, model.joints, model.g)
@@ -56,7 +56,7 @@ class RodLevel(Mechanism):
         return model.at_pose(j_l), model.at_pose(j_r)
 
     def rod_system(self, pose: Array) -> tuple[Array, Array]:
-        """J_l (..., k, m) and J_r (..., k, k) with J_l q' = J_r v; (49)."""
+        """J_l (..., k, m) and J_r (..., k, v) with J_l q' = J_r v; (49). Redundant drives make k > v."""
         j_l, j_r = self._evaluate("rods", lambda _: list(self.rod_system_symbolic()), pose)
         return j_l, j_r
 

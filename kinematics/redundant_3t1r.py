@@ -1,0 +1,306 @@
+"""Redundant 3T-1R robot (Shayya, Krut, Company, Baradat, Pierrot, IROS 2013): six parallel slides, four freedoms.
+
+Arms 1, 2 and 5, 6 are single rods to the ends of an upright platform; arms 3 and 4 are parallelograms to its far side.
+Equation numbers are the paper's; where it errs, the expression here follows from the closure and the documentation
+says so. The paper's platform is drawn, not dimensioned; with B_1 = B_2 at (-d/2, 0, a/2), B_3 = B_4 at (d/2, 0, 0) and
+B_5 = B_6 at (-d/2, 0, -a/2) in the platform's frame its Table I comes out.
+
+The parallelograms are arms 3 and 4 (chains III and IV, section II). Their short sides stand along e_z: a side of any
+other direction would be turned with the platform at one end and not at the other.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from types import SimpleNamespace
+from typing import ClassVar, NamedTuple
+
+import casadi as ca
+import numpy as np
+from scipy.linalg import block_diag
+
+from kinematics.bodies import Bodies
+from kinematics.clearance import segment_distances
+from kinematics.errors import InvalidShape
+from kinematics.indices import FviBounds
+from kinematics.interpreter import evaluate
+from kinematics.linear import volume
+from kinematics.mechanism import Array, Build
+from kinematics.model import Model
+from kinematics.redundancy import BestFit, EncoderCheck, check_encoders, least_squares
+from kinematics.redundant_3t1r_forward import CANDIDATES, candidate_poses
+from kinematics.redundant_3t1r_geometry import Redundant3T1RGeometry, Redundant3T1RInertia
+from kinematics.rods import RodLevel
+
+_LIMBS = 6
+_AHEAD = ca.DM([-0.5, -0.5, 0.5, 0.5, -0.5, -0.5])  # B_i along the platform's x, in units of d
+_ABOVE = ca.DM([0.5, 0.5, 0.0, 0.0, -0.5, -0.5])  # B_i along e_z, in units of a
+_SIDE = (1, -1, 1, -1, 1, -1)  # y_1 = y_5 = -y_2 = -y_6, y_3 = -y_4
+_FLOOR = (1, 1, 0, 0, -1, -1)  # z_1 = z_2 = -z_5 = -z_6, z_3 = z_4 = 0
+_PARALLELOGRAMS = (2, 3)
+_OUTER = (0, 1, 4, 5)
+# Arms that meet at a platform point have no distance to keep.
+_APART = tuple((i, j) for i in range(_LIMBS) for j in range(i + 1, _LIMBS) if i // 2 != j // 2)
+_ROUNDING = 1e-9  # by how much rounding may break (21) [m]
+
+
+class ParallelSingularity(NamedTuple):
+    """The two conditions of section V.B; J_x loses rank only where one of them is zero.
+
+    Attributes:
+        translation: (...,) sqrt(det M^T M) of (37), in [0, 1]: the outer arms hold B_1 where it is not zero.
+        rotation: (...,) larger of |n_3 . (r x e_z)| and |n_4 . (r x e_z)| over |r x e_z|, in [0, 1]: the middle arms
+            hold the angle where it is not zero.
+    """
+
+    translation: Array
+    rotation: Array
+
+
+class Redundant3T1R(RodLevel):
+    """Pose [x, y, z, theta], joints x1..x6, the slides' own coordinates (X_r = 0 in (8))."""
+
+    Geometry = Redundant3T1RGeometry
+    Inertia = Redundant3T1RInertia
+    geometry: Redundant3T1RGeometry
+    inertia: Redundant3T1RInertia
+    pose_names = ("x", "y", "z", "theta")
+    joint_names = ("x1", "x2", "x3", "x4", "x5", "x6")
+    joint_units = ("m",) * _LIMBS
+    rotations = (3,)
+    home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.0, 0.0)
+    fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=1.0, speed=0.5, force=0.5)
+    rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta")
+    # (51) of Krut et al.: single rods stay, a parallelogram gives its rods' mean and, last, their difference.
+    row_combinations = block_diag(np.eye(2), [[0.5, 0.5]], [[0.5, 0.5]], np.eye(2), np.zeros((2, 0)))
+    row_combinations[6:, 2:6] = np.kron(np.eye(2), [-1.0, 1.0])
+    column_combinations = np.eye(6)[:, [0, 1, 2, 5, 3, 4]]
+
+    @property
+    def characteristic_length(self) -> float:
+        """d / 2 [m], as in the paper's W."""
+        return self.geometry.platform_length / 2
+
+    # Points.
+
+    @staticmethod
+    def rail_points(joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """A_i (3, 6), on the slides."""
+        y = [g.outer_rail_y if i in _OUTER else g.middle_rail_y for i in range(_LIMBS)]
+        columns = [ca.vertcat(joints[i], _SIDE[i] * y[i], _FLOOR[i] * g.outer_rail_z) for i in range(_LIMBS)]
+        return ca.horzcat(*columns)
+
+    @staticmethod
+    def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """B_i (3, 6); (2), (3)."""
+        forward, up = g.platform_length * _AHEAD.T, g.platform_height * _ABOVE.T
+        return ca.vertcat(pose[0] + ca.cos(pose[3]) * forward, pose[1] + ca.sin(pose[3]) * forward, pose[2] + up)
+
+    @staticmethod
+    def arm_lengths(g: SimpleNamespace) -> ca.SX:
+        """L_i (6,)."""
+        return ca.vertcat(*(g.outer_arm_length if i in _OUTER else g.middle_arm_length for i in range(_LIMBS)))
+
+    # The closure and its closed forms.
+
+    @staticmethod
+    def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(L^2 - |A_i B_i|^2) / (2 L), (4), so that J_q = diag(n_i . e_x) and J_x has the rows of (32)."""
+        arms = Redundant3T1R.platform_points(pose, g) - Redundant3T1R.rail_points(joints, g)
+        lengths = Redundant3T1R.arm_lengths(g)
+        return (lengths**2 - ca.sum1(arms * arms).T) / (2 * lengths)
+
+    @staticmethod
+    def _across(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """x_bi (6,) and the squared distance of B_i from its rail (6,)."""
+        platform = Redundant3T1R.platform_points(pose, g)
+        from_rail = platform[1:, :] - Redundant3T1R.rail_points(ca.SX(_LIMBS, 1), g)[1:, :]
+        return platform[0, :].T, ca.sum1(from_rail * from_rail).T
+
+    @staticmethod
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(7): every slide behind its platform point, the minus of (5)."""
+        x, square = Redundant3T1R._across(pose, g)
+        return x - ca.sqrt(Redundant3T1R.arm_lengths(g) ** 2 - square)
+
+    @staticmethod
+    def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """Each arm's length less the distance of its platform point from the rail [m]."""
+        return Redundant3T1R.arm_lengths(g) - ca.sqrt(Redundant3T1R._across(pose, g)[1])
+
+    @staticmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """1, and sqrt(48) d/2 for sqrt(det J_x^T J_x): unit n_i and levers d/2 allow (6/3)^3 (6 d^2/4) at most."""
+        return ca.SX.ones(_LIMBS), ca.sqrt(48) * g.platform_length / 2
+
+    # Rods, masses, drawing.
+
+    @staticmethod
+    def rod_closure(pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """Eight rods to one rigid platform, which may tilt."""
+        rails, platform = Redundant3T1R.rail_points(joints, g), Redundant3T1R.platform_points(pose, g)
+        lengths, rods = Redundant3T1R.arm_lengths(g), []
+        for limb in range(_LIMBS):
+            for side in (-0.5, 0.5) if limb in _PARALLELOGRAMS else (0.0,):
+                offset = ca.vertcat(0, 0, side * g.parallelogram_width)
+                end = platform[:, limb] + offset
+                moved = end + displacement[:3] + ca.cross(displacement[3:], end - pose[:3])
+                rod = moved - rails[:, limb] - offset
+                rods.append((lengths[limb] ** 2 - ca.sumsqr(rod)) / (2 * lengths[limb]))
+        return ca.vertcat(*rods)
+
+    @classmethod
+    def internal_determinant_symbolic(cls) -> ca.SX:
+        """(n_3 x n_4) . e_z: det J_int over the square of the parallelograms' width."""
+        arms = cls._directions_symbolic()
+        return ca.cross(arms[:, 2], arms[:, 3])[2]
+
+    @classmethod
+    def _directions_symbolic(cls) -> ca.SX:
+        """n_i (3, 6) at a pose: the translation's part of J_x."""
+        return cls.model().j_x_at_pose[:, :3].T
+
+    def parallel_singularity(self, pose: Array) -> ParallelSingularity:
+        """How far the pose is from a parallel singularity; (35)-(38) with M of arms 1, 2, 5 and 6."""
+
+        def build(_: Model) -> list[ca.SX]:
+            arms, pose_ = self._directions_symbolic(), self.model().pose
+            across = ca.vertcat(ca.sin(pose_[3]), -ca.cos(pose_[3]), 0)  # r x e_z over d
+            outer = volume(arms[:, list(_OUTER)].T) / ca.sqrt((4 / 3) ** 3)
+            return [outer, ca.fmax(ca.fabs(arms[:, 2].T @ across), ca.fabs(arms[:, 3].T @ across))]
+
+        translation, rotation = self._evaluate("parallel", build, pose)
+        return ParallelSingularity(translation[..., 0], rotation[..., 0])
+
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+        """Slides with half of their rods; platform, payload and the rods' other half."""
+        i, bodies = self.inertia, Bodies()
+        rails, platform = self.rail_points(joints, g), self.platform_points(pose, g)
+        for limb in range(_LIMBS):
+            half = i.rod_mass / 2 * (2 if limb in _PARALLELOGRAMS else 1)
+            bodies.of_joints.particles.append((i.slide_mass + half, rails[:, limb]))
+            bodies.of_pose.particles.append((half, platform[:, limb]))
+        bodies.of_pose.particles.append((i.platform_mass + payload, pose[:3]))
+        bodies.of_pose.rotors.append((i.platform_inertia, pose[3]))
+        return bodies
+
+    @staticmethod
+    def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
+        """A stretch of each rail about its slide, the arms (both rods of 3 and 4), and the platform."""
+        rails, platform = Redundant3T1R.rail_points(joints, g), Redundant3T1R.platform_points(pose, g)
+        stretch = ca.vertcat(g.outer_arm_length / 4, 0, 0)
+        half = ca.vertcat(0, 0, g.parallelogram_width / 2)
+        lines = {}
+        for i in range(_LIMBS):
+            lines[f"rail {i + 1}"] = ca.horzcat(rails[:, i] - stretch, rails[:, i] + stretch)
+            a, b = rails[:, i], platform[:, i]
+            if i in _PARALLELOGRAMS:
+                lines[f"rods {i + 1}"] = ca.horzcat(a - half, b - half, b + half, a + half, a - half)
+            else:
+                lines[f"arm {i + 1}"] = ca.horzcat(a, b)
+        middle = (platform[:, 0] + platform[:, 4]) / 2
+        lines["platform"] = ca.horzcat(platform[:, 0], middle, platform[:, 2], middle, platform[:, 4])
+        return lines
+
+    def arm_distances(self, pose: Array, rods: bool = False) -> dict[tuple[int, int], Array]:
+        """Distance between the axes of every two arms that do not share a platform point.
+
+        Args:
+            rods: take arms 3 and 4 as the two rods that they are, not as the middle line A_i B_i.
+
+        Returns:
+            {(i, j): (...,) metres}, arms counted from 1; NaN out of reach.
+        """
+        rails, platform = self._evaluate(
+            "arms", lambda m: [m.at_pose(self.rail_points(m.joints, m.g)), self.platform_points(m.pose, m.g)], pose
+        )
+        ends = np.moveaxis(np.stack([rails, platform], axis=-1), (-2, -1), (0, -2))  # (6, ..., 2, 3)
+        half = np.array([0.0, 0.0, self.geometry.parallelogram_width / 2])
+        lines = [(e - half, e + half) if i in _PARALLELOGRAMS and rods else (e,) for i, e in enumerate(ends)]
+        return {
+            (i + 1, j + 1): np.min([segment_distances(one, two) for one in lines[i] for two in lines[j]], axis=0)
+            for i, j in _APART
+        }
+
+    def arm_clearance(self, pose: Array, rods: bool = False) -> Array:
+        """(...,) the smallest of `arm_distances` [m]; the arms' thickness is still to be taken off."""
+        return np.min(list(self.arm_distances(pose, rods).values()), axis=0)
+
+    # The forward models.
+
+    def _candidates(self, joints: Array) -> tuple[Array, Array, Array]:
+        """S_1 to S_4 (..., 4, 4), worst error of a length (..., 4) and smallest x_bi - x_i (..., 4), both in metres."""
+        poses, errors, ahead = evaluate(self.program("candidates", lambda _: _candidate_build()), joints)
+        return poses, errors, ahead
+
+    def forward(self, joints: Array, tolerance: float = 1e-6) -> Array:
+        """(..., 6) -> (..., 4), the candidate of (20) that has every slide behind its platform point, (21).
+
+        Args:
+            tolerance: by how much an arm or the platform may be too long or too short [m]. Joints that no pose has give
+                NaN; infinity gives what the paper's model gives, which never looks at x_6; `forward_least_squares`
+                weighs all six.
+        """
+        poses, errors, ahead = self._candidates(self._joints(joints))
+        score = np.fmax(np.where(np.isnan(errors), np.inf, errors), -ahead)
+        best = score.argmin(axis=-1)[..., None]
+        result = np.take_along_axis(poses, best[..., None], axis=-2)[..., 0, :]
+        error, behind = (np.take_along_axis(v, best, axis=-1) for v in (errors, ahead))
+        return np.where((error <= tolerance) & (behind >= -_ROUNDING), result, np.nan)
+
+    def assembly_modes(self, joints: Array, tolerance: float = 1e-6) -> Array:
+        """(6,) -> (k, 4), every real pose in which all six arms close; the working one first, k = 0 if there is none.
+
+        The paper's four candidates close arms 1, 2 and 5 (and 3, 4 only at the right distance from B_1): mostly one of
+        them closes all six, on the planes y_b1 = 0 and z = 0 two of B_1 may.
+        """
+        joints = self._joints(joints)
+        if joints.ndim != 1:
+            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        poses, errors, ahead = self._candidates(joints)
+        closing = np.flatnonzero(errors <= tolerance)
+        return poses[closing[np.argsort(-ahead[closing], kind="stable")]]
+
+    def forward_least_squares(self, joints: Array, start: Array | None = None) -> BestFit:
+        """The pose whose joints are nearest to the measured ones, all six weighed alike.
+
+        Args:
+            joints: (..., 6), consistent or not.
+            start: (..., 4) a pose nearby, such as the last one; by default the paper's model, or home at the median x
+                where that finds no pose within reach.
+        """
+        joints = self._joints(joints)
+        if start is None:
+            start = self.forward(joints, tolerance=np.inf)
+            unreached = np.isnan(self.inverse(start)).any(axis=-1, keepdims=True)
+            start = np.where(unreached, self._home_near(joints), start)
+        return least_squares(self, joints, self._poses(start))
+
+    def _home_near(self, joints: Array) -> Array:
+        """Home, moved along x to where most of the joints say."""
+        home = np.tile(self.home, (*joints.shape[:-1], 1))
+        home[..., 0] += np.median(joints - self.inverse(np.asarray(self.home)), axis=-1)
+        return home
+
+    def check_encoders(self, joints: Array, accuracy: float = 1e-6) -> EncoderCheck:
+        """Which encoder is faulty, as far as the two redundancy equations tell; see `redundancy.check_encoders`.
+
+        Encoders 3 and 4 can never be told apart: the outer arms alone place B_1, which leaves one equation more than
+        the angle needs, and either of the two may be the one that is wrong.
+
+        Args:
+            joints: (..., 6) measured.
+            accuracy: of a sound encoder [m].
+        """
+        joints = self._joints(joints)
+        starts = self._home_near(joints)[..., None, :] + np.outer([-1.2, 0.0, 1.2], np.eye(4)[3])
+        return check_encoders(self, joints, self.forward_least_squares(joints), starts, accuracy)
+
+
+@cache
+def _candidate_build() -> Build:
+    model, cls = Redundant3T1R.model(), Redundant3T1R
+    poses, ahead, excess = candidate_poses(model.joints, model.g)
+    gaps = [ca.vertcat(cls.closure(poses[:, k], model.joints, model.g), excess[k]) for k in range(CANDIDATES)]
+    errors = ca.vertcat(*(ca.mmax(ca.fabs(gap)) for gap in gaps))
+    return [model.joints], [poses.T, errors, ca.vertcat(*(ca.mmin(ahead[:, k]) for k in range(CANDIDATES)))]
