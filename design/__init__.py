@@ -1,19 +1,28 @@
 """Regions, requirements and the synthesis of geometries that meet them."""
 
-from design.errors import InvalidRegion, SynthesisFailed
+from design.certificate import BestBound, Certificate, best_bound, certify
+from design.errors import BrokenCertificate, InvalidRegion, OtherCertificate, SynthesisFailed
 from design.region import Box, Cylinder, Region
+from design.replay import replay
 from design.requirement import Bounds, Requirement, SumLimit
 from design.search import WorstPoses, worst_poses
 
 __all__ = [
+    "BestBound",
     "Bounds",
     "Box",
+    "BrokenCertificate",
+    "Certificate",
     "Cylinder",
     "InvalidRegion",
+    "OtherCertificate",
     "Region",
     "Requirement",
     "SumLimit",
     "SynthesisFailed",
     "WorstPoses",
+    "best_bound",
+    "certify",
+    "replay",
     "worst_poses",
 ]

@@ -1,23 +1,33 @@
-"""Interval evaluation of any CasADi SX function over boxes, rounded outward: what a proof may rest on.
+"""Interval evaluation of a box program over boxes, rounded outward: what a proof may rest on.
 
-The same instruction stream as the block interpreter's runs over pairs of bounds. An operation that is not defined on all
-of a box (a root of something negative, a division by zero) gives (-inf, inf), so that nothing is ever proved from it;
-so does an operation without a rule.
+Every register holds two bounds. The four operations and the root are correctly rounded by IEEE 754, so one unit in the
+last place outward is enough for them. Sine, cosine and arctangent come from the C library (or numba's vector library),
+which promise no error bound: here they are ASSUMED to be within four units in the last place of 1; tests hold them
+against an arbitrary-precision library.
+
+An operation that is not defined on all of a box (a root of something negative, a division by zero), or that has no
+rule, gives (-inf, inf); an operation on an operand with an infinite bound gives an infinite bound. So finite bounds of an
+output tell that everything it is made of is defined on the whole box, and nothing is ever proved from the rest.
 """
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import numba
 import numpy as np
 
 from kinematics.errors import InvalidValue
-from kinematics.program import Op, Program
+from kinematics.program import Op
 from kinematics.threads import over_spans
+
+if TYPE_CHECKING:
+    from kinematics.box_program import BoxProgram
 
 BLOCK = 128
 _EPS = 2.0**-52  # one unit in the last place, at least: twice what a correctly rounded operation is off by
 _TINY = 5e-324
-_LIBRARY = 2.0**-50  # sine, cosine and arctangent of the C library are within one unit; four are allowed
+_LIBRARY = 2.0**-50  # what sine, cosine and arctangent may be off by, relative to 1
 
 (CONST, INPUT, OUTPUT, ASSIGN, ADD, SUB, MUL, DIV, NEG, SQRT, SQ, TWICE, INV, SIN, COS, ATAN2, FABS, FMIN, FMAX) = (
     int(Op(k)) for k in range(19)
@@ -25,33 +35,38 @@ _LIBRARY = 2.0**-50  # sine, cosine and arctangent of the C library are within o
 SIGN = int(Op.SIGN)
 
 
-def enclose(program: Program, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def enclose(program: BoxProgram, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Bounds of each output over each box.
 
     Args:
-        low, high: (k, n) the boxes' bounds, in the order of the program's inputs side by side.
+        low, high: (k, n) the boxes' bounds, one column an input.
 
     Returns:
-        low, high (k, outputs), columns of all outputs side by side.
+        low, high (k, outputs); never NaN.
 
     Raises:
-        InvalidValue: the boxes have not the columns that the function wants.
+        InvalidValue: the boxes have not the columns that the function wants, or a bound is NaN or above its partner.
     """
-    if low.shape != high.shape or low.shape[-1] != sum(program.inputs):
-        raise InvalidValue("columns of the boxes", (low.shape, high.shape), str(program.inputs))
+    if low.shape != high.shape or low.ndim != 2 or low.shape[-1] != program.inputs:
+        raise InvalidValue("shape of the boxes", (low.shape, high.shape), f"(k, {program.inputs}) twice")
     low, high = np.ascontiguousarray(low, dtype=float), np.ascontiguousarray(high, dtype=float)
-    out = np.zeros((2, low.shape[0], program.output_size))
-
-    def run(span: slice) -> None:
-        stream = (program.op, program.left, program.right, program.target, program.constant, program.work_size)
-        _kernel(*stream, low[span], high[span], out[0, span], out[1, span])
-
-    over_spans(low.shape[0], run)
+    if not (low <= high).all():
+        raise InvalidValue("bounds of the boxes", "NaN or a lower bound above the upper one", "low <= high")
+    out = np.zeros((2, low.shape[0], program.outputs))
+    over_spans(low.shape[0], lambda span: _kernel(*program.stream, low[span], high[span], out[0, span], out[1, span]))
     return out[0], out[1]
 
 
+def operate(op: Op, left: tuple[float, float], right: tuple[float, float], same: bool = False) -> tuple[float, float]:
+    """One operation on one pair of intervals; `same` where both operands are one and the same number."""
+    columns = [np.array([v]) for v in (*left, *right)]
+    low, high = np.empty(1), np.empty(1)
+    _apply(int(op), same, *columns, low, high)
+    return float(low[0]), float(high[0])
+
+
 @numba.njit(nogil=True, cache=True, error_model="numpy")
-def _kernel(op, left, right, target, constant, work_size, low, high, out_low, out_high):  # type: ignore[no-untyped-def]
+def _kernel(op, left, right, target, least, most, work_size, low, high, out_low, out_high):  # type: ignore[no-untyped-def]
     width = min(BLOCK, (low.shape[0] + 7) // 8 * 8)
     lo, hi = np.zeros((work_size, width)), np.zeros((work_size, width))
     for first in range(0, low.shape[0], width):
@@ -70,11 +85,10 @@ def _kernel(op, left, right, target, constant, work_size, low, high, out_low, ou
                 lo[z][size:] = lo[z][0]
                 hi[z][size:] = hi[z][0]
             elif code == CONST:
-                lo[z][:] = constant[k]
-                hi[z][:] = constant[k]
+                lo[z][:] = least[k]
+                hi[z][:] = most[k]
             else:
-                same = x == y
-                _apply(code, same, lo[x], hi[x], lo[y], hi[y], lo[z], hi[z])
+                _apply(code, x == y, lo[x], hi[x], lo[y], hi[y], lo[z], hi[z])
 
 
 @numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
@@ -82,22 +96,22 @@ def _apply(code, same, a, b, c, d, r, s):  # type: ignore[no-untyped-def]
     """[r, s] = op([a, b], [c, d]) over a block, outward; every NaN becomes an unbounded side."""
     if code == ADD:
         for i in range(r.size):
-            r[i], s[i] = _out(a[i] + c[i], b[i] + d[i])
+            r[i], s[i] = _out(a[i] + c[i], b[i] + d[i], 0.0)
     elif code == SUB:
         for i in range(r.size):
-            r[i], s[i] = _out(a[i] - d[i], b[i] - c[i])
+            r[i], s[i] = _out(a[i] - d[i], b[i] - c[i], 0.0)
+    elif code == SQ or (code == MUL and same):
+        for i in range(r.size):
+            p, q = a[i] * a[i], b[i] * b[i]
+            least = 0.0 if a[i] <= 0.0 <= b[i] else min(p, q)
+            low, s[i] = _out(least, max(p, q), _TINY)
+            r[i] = max(low, 0.0)
     elif code == MUL:
         for i in range(r.size):
             p, q, u, v = a[i] * c[i], a[i] * d[i], b[i] * c[i], b[i] * d[i]
             least, most = min(min(p, q), min(u, v)), max(max(p, q), max(u, v))
             total = p + q + u + v  # NaN where a product is, or where infinities of both signs meet
-            r[i], s[i] = _out(least, most) if total - total == 0.0 else (-np.inf, np.inf)
-    elif code == SQ:
-        for i in range(r.size):
-            p, q = a[i] * a[i], b[i] * b[i]
-            least = 0.0 if a[i] <= 0.0 <= b[i] else min(p, q)
-            low, s[i] = _out(least, max(p, q))
-            r[i] = max(low, 0.0)
+            r[i], s[i] = _out(least, most, _TINY) if total - total == 0.0 else (-np.inf, np.inf)
     elif code == NEG:
         for i in range(r.size):
             r[i], s[i] = -b[i], -a[i]
@@ -113,9 +127,10 @@ def _apply(code, same, a, b, c, d, r, s):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(nogil=True, cache=True, error_model="numpy", inline="always")
-def _out(low, high):  # type: ignore[no-untyped-def]
-    low -= abs(low) * _EPS + _TINY
-    high += abs(high) * _EPS + _TINY
+def _out(low, high, tiny):  # type: ignore[no-untyped-def]
+    """One unit outward at least; `tiny` where underflow may round too, which sums never do. Overflow gives NaN here."""
+    low -= abs(low) * _EPS + tiny
+    high += abs(high) * _EPS + tiny
     if low != low:
         low = -np.inf
     if high != high:
@@ -126,7 +141,8 @@ def _out(low, high):  # type: ignore[no-untyped-def]
 @numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
 def _rare(code, same, a, b, c, d):  # type: ignore[no-untyped-def]
     """Operations with conditions, one box at a time."""
-    if not (a <= b and c <= d):  # NaN somewhere
+    total = a + b + c + d
+    if not total - total == 0.0:  # an infinite bound: something undefined or overflown went in
         return -np.inf, np.inf
     if code == INV:
         return _quotient(1.0, 1.0, a, b)
@@ -135,7 +151,7 @@ def _rare(code, same, a, b, c, d):  # type: ignore[no-untyped-def]
     if code == SQRT:
         if a < 0.0:
             return -np.inf, np.inf
-        low, high = _out(np.sqrt(a), np.sqrt(b))
+        low, high = _out(np.sqrt(a), np.sqrt(b), 0.0)
         return max(low, 0.0), high
     if code == FABS:
         if a >= 0.0:
@@ -150,9 +166,9 @@ def _rare(code, same, a, b, c, d):  # type: ignore[no-untyped-def]
     if code == SIGN:
         return np.sign(a), np.sign(b)
     if code == SIN:
-        return _cosine(a - 0.5 * np.pi, b - 0.5 * np.pi)
+        return (0.0, 0.0) if a == b == 0.0 else _cosine(a - 0.5 * np.pi, b - 0.5 * np.pi)
     if code == COS:
-        return _cosine(a, b)
+        return (1.0, 1.0) if a == b == 0.0 else _cosine(a, b)
     if code == ATAN2:
         return _arctangent(a, b, c, d)
     return -np.inf, np.inf
@@ -166,12 +182,15 @@ def _quotient(a, b, c, d):  # type: ignore[no-untyped-def]
     total = p + q + u + v
     if not total - total == 0.0:
         return -np.inf, np.inf
-    return _out(min(min(p, q), min(u, v)), max(max(p, q), max(u, v)))
+    return _out(min(min(p, q), min(u, v)), max(max(p, q), max(u, v)), _TINY)
 
 
 @numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
 def _cosine(a, b):  # type: ignore[no-untyped-def]
-    """Extremes at the ends and where the box holds a multiple of pi, by a count that allows for its own rounding."""
+    """Extremes at the ends and where the box holds a multiple of pi, by a count that allows for its own rounding.
+
+    `slack` covers the library's error, the rounding of a shift by pi / 2, and of pi itself, all relative to the angle.
+    """
     slack = _LIBRARY * (1.0 + max(abs(a), abs(b)))
     if not b - a < 6.0 or max(abs(a), abs(b)) > 1e6:
         return -1.0, 1.0

@@ -113,6 +113,12 @@ class Mechanism(ABC):
         """(m, n) derivative of the closure by the twist; to be replaced where Euler angles would spoil it."""
         return ca.jacobian(cls.closure(pose, joints, g), pose) @ cls.pose_rate_map(pose)
 
+    @classmethod
+    def cleared_j_x(cls) -> tuple[ca.SX, ca.SX]:
+        """K (m, n) and k (m,) > 0 with J_x = diag(1 / k) K in the working mode; K without the rows' divisors, if any."""
+        model = cls.model()
+        return model.j_x_at_pose, ca.SX.ones(model.j_x_at_pose.shape[0])
+
     @property
     def actuator_names(self) -> tuple[str, ...]:
         """What C joints is called; the joints themselves unless the drives couple them."""
