@@ -1,6 +1,7 @@
 """Regions, requirements and the synthesis of geometries that meet them."""
 
 from design.certificate import BestBound, Certificate, best_bound, certify
+from design.certificate_file import load_certificate, save_certificate
 from design.errors import BrokenCertificate, InvalidRegion, OtherCertificate, SynthesisFailed
 from design.region import Box, Cylinder, Region
 from design.replay import replay
@@ -23,6 +24,8 @@ __all__ = [
     "WorstPoses",
     "best_bound",
     "certify",
+    "load_certificate",
     "replay",
+    "save_certificate",
     "worst_poses",
 ]

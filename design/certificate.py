@@ -4,9 +4,10 @@
 
 What a proof rests on, beside the lemmas of `claims` and the mean-value theorem: IEEE 754 arithmetic, the accuracy that
 `kinematics.interval` assumes of the sine, cosine and arctangent, and CasADi's algebra, which builds the expressions and
-their derivatives. What is proved is a statement about real numbers: the geometry, the region and the bound are the exact
-values of their doubles, and so are the constants written into the model (2 pi among them). A region's boundary counts as
-inside. Nothing else is sampled or trusted: a plain evaluation only chooses signs, scalings, cuts and counterexamples.
+their derivatives. What is proved is a statement about real numbers: geometry, region and bound are the exact values of
+their doubles, and so are the constants written into the model (2 pi among them, and products of two such constants,
+which CasADi rounds once). A region's boundary counts as inside. Plain evaluation only chooses signs, scalings, cuts and
+counterexamples.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ from kinematics.errors import InvalidValue
 Array = np.ndarray
 MOST_BOXES = 4_000_000
 _SEED = 20_000  # poses of the grid that looks for a counterexample first
+_MOST_PER_COORDINATE = 200
+_MOST_TRIES = 12  # of bounds
 _ROUNDING = 1e-12  # by how much plain arithmetic must miss the bound before it refutes, relative to 1 or the bound
 
 
@@ -103,8 +106,7 @@ def certify(
         inside = poses[region.contains(poses, names)]
         return first_failing(robot, margin, inside, at_least, fvi_bounds, length)
 
-    worst = worst_poses(robot, region, margin, bounds=fvi_bounds, characteristic_length=length, about=_SEED)
-    counterexample = failing(worst.poses)
+    counterexample = failing(_suspects(robot, region, margin, fvi_bounds, length, _SEED))
     if counterexample is not None:
         nothing = np.empty((0, 2, len(names)))
         found = Search(np.empty(0, dtype=np.int8), 0, nothing, counterexample)
@@ -127,6 +129,14 @@ def certify(
         codes=found.codes if proved and not refuted else np.empty(0, dtype=np.int8),
         left=found.left,
     )
+
+
+def _suspects(robot: Mechanism, region: Region, margin: str, bounds: FviBounds, length: float, about: int) -> Array:
+    """(k, n) poses where the margin is lowest as far as a grid and descents tell, the lowest first."""
+    if region.dimension == 0:
+        return region.corners(robot.pose_names)
+    about = min(about, _MOST_PER_COORDINATE**region.dimension)
+    return worst_poses(robot, region, margin, bounds=bounds, characteristic_length=length, about=about).poses
 
 
 def first_failing(
@@ -170,9 +180,14 @@ def best_bound(
     """
     if not (np.isfinite(tolerance) and tolerance > 0.0):
         raise InvalidValue("tolerance", tolerance, "a finite number > 0")
-    sampled = worst_poses(
-        robot, region, margin, bounds=bounds, characteristic_length=characteristic_length, about=10 * _SEED
-    ).value
+    fvi_bounds = bounds or robot.fvi_bounds
+    length = robot.characteristic_length if characteristic_length is None else float(characteristic_length)
+    region.check(robot.pose_names)
+
+    def value(pose: Array) -> float:
+        return float(robot.margin(margin, pose, fvi_bounds, length))
+
+    sampled = value(_suspects(robot, region, margin, fvi_bounds, length, 10 * _SEED)[0])
     step = float(tolerance)
     for _ in range(_MOST_TRIES):
         if not np.isfinite(sampled):
@@ -182,17 +197,14 @@ def best_bound(
             region,
             margin,
             at_least=sampled - step,
-            bounds=bounds,
-            characteristic_length=characteristic_length,
+            bounds=fvi_bounds,
+            characteristic_length=length,
             most_boxes=most_boxes,
         )
         if certificate.status == "proved":
             return BestBound(certificate, sampled)
         if certificate.counterexample is not None:
-            sampled = float(robot.margin(margin, certificate.counterexample, bounds, characteristic_length))
+            sampled = value(certificate.counterexample)
         else:
             step *= 2.0
     return None
-
-
-_MOST_TRIES = 12

@@ -1,14 +1,15 @@
 """What has to be shown for `margin >= bound`: expressions that must be at least 0, without norms and moduli.
 
-Interval bounds of a quotient of norms are wide and those of the determinants behind it are far tighter, so each margin is
-rewritten. The lemmas:
+Interval bounds of a quotient of norms are wide and those of the determinants behind it are far tighter, so each margin
+is rewritten. The lemmas:
 
 - |u| >= c for a continuous u on a connected region: s u - c >= 0 with one sign s = +-1 implies it for every c, and for
   c > 0 no other way exists. The sign is taken at the region's middle; a wrong one only fails to prove.
 - det J for J = diag(1 / k) K, k > 0, and any square regular S: s det(K S) - c prod(k) |det S| >= 0 with det S not 0 and
   s its sign; S is near K^-1 in the middle of the box, which makes K S nearly the identity over it.
 - The volume sqrt(det J^T J) >= c > 0: the sum of the squared minors less c^2.
-- Speed i of the FVI, q'_max / (v_wl |j_i|) >= c > 0, j_i = a_i / b_i a row of J_mw: q'_max^2 b_i^2 - c^2 v_wl^2 |a_i|^2.
+- Speed i of the FVI, q'_max / (v_wl |j_i|) >= c > 0, with j_i = a_i / b_i a row of J_mw:
+  q'_max^2 b_i^2 - c^2 v_wl^2 |a_i|^2 >= 0.
 - Force i, tau_max / (f_wl |p_i|) >= c > 0, p_i = J_mw^+ e_i: with J = J_mw S, M = J^T J and det M > 0 it is
   p_i = S adj(M) J^T e_i / det M, so tau_max^2 det(M)^2 - c^2 f_wl^2 |S adj(M) J^T e_i|^2 >= 0. S comes from the QR
   factors in the middle of the box, so M is nearly the identity. A square J_mw needs no M: p_i = S adj(J) e_i / det J.
@@ -19,6 +20,7 @@ S is an input of its own: any numbers are right, good ones only make the bounds 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -37,13 +39,14 @@ class Numbers:
     """Symbols of the claim's own numbers, which the geometry's join; all are fixed before anything is evaluated."""
 
     bound: ca.SX
-    fvi: FviBounds  # of symbols
-    length: ca.SX
+    fvi: FviBounds
+    length: Any
 
     @classmethod
     def symbols(cls) -> Numbers:
         """Fresh ones."""
-        return cls(ca.SX.sym("bound"), FviBounds(*(ca.SX.sym("b") for _ in range(4))), ca.SX.sym("length"))
+        symbols: list[Any] = [ca.SX.sym(name) for name in ("speed", "effort", "wanted speed", "wanted force")]
+        return cls(ca.SX.sym("bound"), FviBounds(*symbols), ca.SX.sym("length"))
 
     @property
     def vector(self) -> ca.SX:

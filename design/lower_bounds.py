@@ -11,7 +11,7 @@ import casadi as ca
 import numba
 import numpy as np
 
-from design.claims import Claims, Numbers, claims_of
+from design.claims import Numbers, claims_of
 from design.region import Region
 from kinematics import FviBounds, Mechanism
 from kinematics.box_program import BoxProgram
@@ -53,7 +53,7 @@ class LowerBounds:
         self._count = claims.expressions.numel()
         self._with_gradient, self._plain = program(claims.expressions, gradient), program(claims.expressions)
         self._size = claims.scaling.shape[0]
-        self._matrix = _plain_program(robot, claims, numbers, fixed) if claims.matrix is not None else None
+        self._matrix = _plain_program(robot, claims.matrix, numbers, fixed) if claims.matrix is not None else None
 
     def lowest(self, low: Array, high: Array) -> tuple[Array, Array]:
         """Lower bounds and where to split.
@@ -94,10 +94,10 @@ class LowerBounds:
         return np.swapaxes(result, -1, -2).reshape(len(middle), self._size**2)
 
 
-def _plain_program(robot: Mechanism, claims: Claims, numbers: Numbers, fixed: list[float]) -> Program:
+def _plain_program(robot: Mechanism, matrix: ca.SX, numbers: Numbers, fixed: list[float]) -> Program:
     model = robot.model()
     symbols = ca.vertcat(model.geometry, numbers.vector)
-    matrix = ca.substitute(claims.matrix, symbols, ca.SX(fixed))
+    matrix = ca.substitute(matrix, symbols, ca.SX(fixed))
     return bulk(ca.Function("matrix", [model.pose], [ca.densify(matrix)]))
 
 

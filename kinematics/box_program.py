@@ -33,11 +33,6 @@ class BoxProgram:
     inputs: int
     outputs: int
 
-    @property
-    def stream(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, int]:
-        """What the kernel runs."""
-        return self.op, self.left, self.right, self.target, self.low, self.high, self.work_size
-
     @classmethod
     def of(cls, program: Program, fixed: Sequence[float] = ()) -> BoxProgram:
         """Fix the last input columns at these numbers and compute what follows from them alone.
@@ -63,9 +58,9 @@ class BoxProgram:
             else:
                 work[target] = graph.operation(op, work[left], work[right])
         table, work_size = graph.emit(outputs)
-        integers = [np.array([row[i] for row in table], dtype=np.int64) for i in range(4)]
+        code, left_, right_, target_ = (np.array([row[i] for row in table], dtype=np.int64) for i in range(4))
         low, high = (np.array([row[i] for row in table]) for i in (4, 5))
-        return cls(*integers, low, high, work_size, free, program.output_size)
+        return cls(code, left_, right_, target_, low, high, work_size, free, program.output_size)
 
 
 @dataclass

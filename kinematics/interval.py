@@ -6,8 +6,8 @@ which promise no error bound: here they are ASSUMED to be within four units in t
 against an arbitrary-precision library.
 
 An operation that is not defined on all of a box (a root of something negative, a division by zero), or that has no
-rule, gives (-inf, inf); an operation on an operand with an infinite bound gives an infinite bound. So finite bounds of an
-output tell that everything it is made of is defined on the whole box, and nothing is ever proved from the rest.
+rule, gives (-inf, inf); an operation on an operand with an infinite bound gives an infinite bound. So finite bounds of
+an output tell that everything it is made of is defined on the whole box, and nothing is ever proved from the rest.
 """
 
 from __future__ import annotations
@@ -53,20 +53,27 @@ def enclose(program: BoxProgram, low: np.ndarray, high: np.ndarray) -> tuple[np.
     if not (low <= high).all():
         raise InvalidValue("bounds of the boxes", "NaN or a lower bound above the upper one", "low <= high")
     out = np.zeros((2, low.shape[0], program.outputs))
-    over_spans(low.shape[0], lambda span: _kernel(*program.stream, low[span], high[span], out[0, span], out[1, span]))
+    p = program
+
+    def run(span: slice) -> None:
+        boxes = low[span], high[span], out[0, span], out[1, span]
+        _kernel(p.op, p.left, p.right, p.target, p.low, p.high, p.work_size, boxes)
+
+    over_spans(low.shape[0], run)
     return out[0], out[1]
 
 
 def operate(op: Op, left: tuple[float, float], right: tuple[float, float], same: bool = False) -> tuple[float, float]:
     """One operation on one pair of intervals; `same` where both operands are one and the same number."""
-    columns = [np.array([v]) for v in (*left, *right)]
+    a, b, c, d = (np.array([v]) for v in (*left, *right))
     low, high = np.empty(1), np.empty(1)
-    _apply(int(op), same, *columns, low, high)
+    _apply(int(op), same, a, b, c, d, low, high)
     return float(low[0]), float(high[0])
 
 
 @numba.njit(nogil=True, cache=True, error_model="numpy")
-def _kernel(op, left, right, target, least, most, work_size, low, high, out_low, out_high):  # type: ignore[no-untyped-def]
+def _kernel(op, left, right, target, least, most, work_size, boxes):  # type: ignore[no-untyped-def]
+    low, high, out_low, out_high = boxes
     width = min(BLOCK, (low.shape[0] + 7) // 8 * 8)
     lo, hi = np.zeros((work_size, width)), np.zeros((work_size, width))
     for first in range(0, low.shape[0], width):
@@ -123,7 +130,7 @@ def _apply(code, same, a, b, c, d, r, s):  # type: ignore[no-untyped-def]
             r[i], s[i] = a[i], b[i]
     else:
         for i in range(r.size):
-            r[i], s[i] = _rare(code, same, a[i], b[i], c[i], d[i])
+            r[i], s[i] = _rare(code, a[i], b[i], c[i], d[i])
 
 
 @numba.njit(nogil=True, cache=True, error_model="numpy", inline="always")
@@ -139,10 +146,10 @@ def _out(low, high, tiny):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
-def _rare(code, same, a, b, c, d):  # type: ignore[no-untyped-def]
+def _rare(code, a, b, c, d):  # type: ignore[no-untyped-def]
     """Operations with conditions, one box at a time."""
     total = a + b + c + d
-    if not total - total == 0.0:  # an infinite bound: something undefined or overflown went in
+    if total - total != 0.0:  # an infinite bound: something undefined or overflown went in
         return -np.inf, np.inf
     if code == INV:
         return _quotient(1.0, 1.0, a, b)
@@ -180,7 +187,7 @@ def _quotient(a, b, c, d):  # type: ignore[no-untyped-def]
         return -np.inf, np.inf
     p, q, u, v = a / c, a / d, b / c, b / d
     total = p + q + u + v
-    if not total - total == 0.0:
+    if total - total != 0.0:
         return -np.inf, np.inf
     return _out(min(min(p, q), min(u, v)), max(max(p, q), max(u, v)), _TINY)
 

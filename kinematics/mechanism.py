@@ -115,7 +115,7 @@ class Mechanism(ABC):
 
     @classmethod
     def cleared_j_x(cls) -> tuple[ca.SX, ca.SX]:
-        """K (m, n) and k (m,) > 0 with J_x = diag(1 / k) K in the working mode; K without the rows' divisors, if any."""
+        """K (m, n) and k (m,) > 0 with J_x = diag(1 / k) K in the working mode; K without the divisors of its rows."""
         model = cls.model()
         return model.j_x_at_pose, ca.SX.ones(model.j_x_at_pose.shape[0])
 
