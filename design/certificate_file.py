@@ -41,7 +41,7 @@ def load_certificate(path: Path) -> Certificate:
         BrokenCertificate: no such archive, or a part of it is missing or not what it should be.
     """
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
             header = json.loads(str(archive["header"]))
             pose, codes, left = (archive[key] for key in ("counterexample", "codes", "left"))
         if codes.dtype != np.int8 or codes.ndim != 1:

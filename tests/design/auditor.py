@@ -29,7 +29,9 @@ class Auditor:
         self._gradient = _program(symbols, gradient)
         components = robot.margin_components(c.margin, c.bounds, c.characteristic_length)
         self._margin = _program([model.pose, model.geometry], components)
-        self._fixed = [arb(v) for v in [*robot.geometry.vector()]]
+        least, most = root(c.region, self.names)
+        self._extent = np.where(most > least, most - least, 1.0)[0]
+        self._fixed = [arb(v) for v in robot.geometry.vector()]
         self._numbers = [arb(v) for v in Numbers.values(c.at_least, c.bounds, c.characteristic_length)]
         self._count = claims.expressions.numel()
         self._matrix = claims.matrix
@@ -51,7 +53,7 @@ class Auditor:
         values = replay(self._margin, [*(arb(float(v)) for v in pose), *self._fixed], OPERATIONS)
         return all(bool(arb(v) >= self.certificate.at_least) for v in values)
 
-    def proves(self, low: Array, high: Array, depth: int = 6) -> bool:
+    def proves(self, low: Array, high: Array, depth: int = 12) -> bool:
         """Whether the claims hold on a box by the mean-value form in balls, cut further where balls are too round."""
         middle = 0.5 * (low + high)
         scaling = self._scaling(middle)
@@ -72,8 +74,7 @@ class Auditor:
             return True
         if depth == 0:
             return False
-        axis = int(np.argmax([float(abs(slopes[k]).mid()) * (high[k] - low[k]) for k in range(n)]))
-        axis = axis if high[axis] > low[axis] else int((high - low).argmax())
+        axis = int(((high - low) / self._extent).argmax())
         lower, upper = high.copy(), low.copy()
         lower[axis] = upper[axis] = middle[axis]
         return self.proves(low, lower, depth - 1) and self.proves(upper, high, depth - 1)
