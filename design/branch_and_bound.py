@@ -67,13 +67,10 @@ def search(
         if not len(nodes):
             continue
         counterexample = failing(0.5 * low + 0.5 * high)
-        width = (high - low) / extent
-        tiny = (width <= SMALLEST).all(axis=1)
+        tiny = ((high - low) / extent <= SMALLEST).all(axis=1)
         small += list(np.stack([low[tiny], high[tiny]], axis=1))
-        unknown = ~np.isfinite(spread).all(axis=1) | (spread == 0.0).all(axis=1)
-        spread[unknown] = width[unknown][:, bounds.free]
-        axis = bounds.free[spread.argmax(axis=1)] if bounds.free.size else np.zeros(len(nodes), dtype=np.int64)
-        nodes, low, high, axis = nodes[~tiny], low[~tiny], high[~tiny], axis[~tiny]
+        nodes, low, high, spread = nodes[~tiny], low[~tiny], high[~tiny], spread[~tiny]
+        axis = bounds.axis(low, high, spread)
         stack.append((tree.cut(nodes, axis), *halves(low, high, axis)))
     left = [np.stack([low, high], axis=1) for _, low, high in stack]
     left.append(np.array(small).reshape(-1, 2, len(names)))

@@ -12,7 +12,8 @@ is rewritten. The lemmas:
   q'_max^2 b_i^2 - c^2 v_wl^2 |a_i|^2 >= 0.
 - Force i, tau_max / (f_wl |p_i|) >= c > 0, p_i = J_mw^+ e_i: with J = J_mw S, M = J^T J and det M > 0 it is
   p_i = S adj(M) J^T e_i / det M, so tau_max^2 det(M)^2 - c^2 f_wl^2 |S adj(M) J^T e_i|^2 >= 0. S comes from the QR
-  factors in the middle of the box, so M is nearly the identity. A square J_mw needs no M: p_i = S adj(J) e_i / det J.
+  factors in the middle of the box, so M is nearly the identity. A square J_mw = diag(1 / b) A needs no M: with
+  A S in place of J, p_i = b_i S adj(A S) e_i / det(A S). Then b_i = 0 breaks speed i, as a_i = 0 would break det A.
 
 S is an input of its own: any numbers are right, good ones only make the bounds tight.
 """
@@ -139,19 +140,20 @@ def _fvi(robot: Mechanism, numbers: Numbers, inside: Array) -> Claims:  # noqa: 
     model, fvi = robot.model(), numbers.fvi
     j_mw = homogeneous(model.actuator_jacobian, robot.rotations, numbers.length)
     m, n = j_mw.shape
+    rows, divisors = j_mw, ca.SX.ones(m)
     if model.drives.is_eye():
         rows, divisors = homogeneous(model.j_x_at_pose, robot.rotations, numbers.length), model.j_q_at_pose
-    else:
-        rows, divisors = j_mw, ca.SX.ones(m)
     speeds = [
         (fvi.joint_speed * divisors[i]) ** 2 - (numbers.bound * fvi.speed) ** 2 * ca.sumsqr(rows[i, :])
         for i in range(m)
     ]
+    matrix, sizes = (rows, divisors) if m == n else (j_mw, ca.SX.ones(m))
     scaling = ca.SX.sym("scaling", n, n)
-    scaled = j_mw @ scaling
+    scaled = matrix @ scaling
     cofactors, det = adjugate(scaled if m == n else scaled.T @ scaled)
     columns = scaling @ (cofactors if m == n else cofactors @ scaled.T)
     forces = [
-        (fvi.joint_effort * det) ** 2 - (numbers.bound * fvi.force) ** 2 * ca.sumsqr(columns[:, i]) for i in range(m)
+        (fvi.joint_effort * det) ** 2 - (numbers.bound * fvi.force * sizes[i]) ** 2 * ca.sumsqr(columns[:, i])
+        for i in range(m)
     ]
-    return Claims(ca.vertcat(*speeds, *forces, det - _REGULAR), scaling, j_mw)
+    return Claims(ca.vertcat(*speeds, *forces, det - _REGULAR), scaling, matrix)

@@ -38,6 +38,7 @@ class LowerBounds:
         model, numbers = robot.model(), Numbers.symbols()
         intervals = [region.intervals[name] for name in robot.pose_names]
         self.free = np.array([i for i, (low, high) in enumerate(intervals) if low < high], dtype=np.int64)
+        self._extent = np.array([high - low if high > low else 1.0 for low, high in intervals])
         middle = region.from_unit(np.full(region.dimension, 0.5), robot.pose_names)
         claims = claims_of(robot, margin, numbers, at_least, middle)
         fixed = [*robot.geometry.vector(), *Numbers.values(at_least, bounds, length)]
@@ -77,6 +78,14 @@ class LowerBounds:
             lambda s: _combine(self._count, natural[s], highest[s], point[s], reach[s], lowest[s], spread[s]),
         )
         return lowest, spread
+
+    def axis(self, low: Array, high: Array, spread: Array) -> Array:
+        """(k,) the coordinate to cut: the largest spread, or the widest part of the region where that is unknown."""
+        if not self.free.size:
+            return np.zeros(len(low), dtype=np.int64)
+        unknown = ~np.isfinite(spread).all(axis=1) | (spread == 0.0).all(axis=1)
+        spread = np.where(unknown[:, None], ((high - low) / self._extent)[:, self.free], spread)
+        return self.free[spread.argmax(axis=1)]
 
     def _scaling(self, middle: Array) -> Array:
         """(k, size^2) the matrices S, column by column: R^-1 of the QR factors, or the inverse of a square matrix."""

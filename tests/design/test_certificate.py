@@ -27,7 +27,7 @@ SCREWS = Box(x=(-0.2, 0.2), y=(-0.2, 0.2), z=(-0.05, 0.05), theta=(-2 * PI, 2 * 
         (Heli4(), CYLINDER, "det_J_x", 0.45),
         (Heli4(), CYLINDER, "J_q", 0.4),
         (Heli4(), CYLINDER, "reach", 0.01),
-        (Heli4(), PART, "fvi", 1.0),
+        (Heli4(), CYLINDER, "fvi", 0.8),
         (Heli4(), PART, "det_J_q", 0.1),
         (Peppermill(), SCREWS, "det_J_x", 1e-6),
         (Peppermill(), SCREWS, "J_q", 1e-6),
