@@ -16,7 +16,16 @@ from design.region import Box, Cylinder, Region
 from kinematics import FviBounds
 from kinematics.errors import LinkwrightError
 
-_PLAIN = ("mechanism", "digest", "margin", "at_least", "characteristic_length", "version", "status", "boxes")
+_PLAIN: dict[str, type] = {
+    "mechanism": str,
+    "digest": str,
+    "margin": str,
+    "at_least": float,
+    "characteristic_length": float,
+    "version": str,
+    "status": str,
+    "boxes": int,
+}
 
 
 def save_certificate(certificate: Certificate, path: Path) -> None:
@@ -47,9 +56,9 @@ def load_certificate(path: Path) -> Certificate:
         if codes.dtype != np.int8 or codes.ndim != 1:
             raise BrokenCertificate(f"its codes are {codes.dtype} of shape {codes.shape}")
         return Certificate(
-            **{key: header[key] for key in _PLAIN},
+            **{key: kind(header[key]) for key, kind in _PLAIN.items()},
             region=_region(header["region"]),
-            bounds=FviBounds(**header["bounds"]),
+            bounds=FviBounds(**{key: float(value) for key, value in header["bounds"].items()}),
             counterexample=pose if pose.size else None,
             codes=codes,
             left=left,

@@ -15,7 +15,8 @@ is rewritten. The lemmas:
   factors in the middle of the box, so M is nearly the identity. A square J_mw = diag(1 / b) A needs no M: with
   A S in place of J, p_i = b_i S adj(A S) e_i / det(A S). Then b_i = 0 breaks speed i, as a_i = 0 would break det A.
 
-S is an input of its own: any numbers are right, good ones only make the bounds tight.
+That the scales are positive is claimed with the rest; the FVI's own numbers must be. S is an input of its own: any
+numbers are right, good ones only make the bounds tight.
 """
 
 from __future__ import annotations
@@ -85,16 +86,16 @@ def claims_of(robot: Mechanism, margin: str, numbers: Numbers, bound: float, ins
     if maker is not None and bound > 0.0:
         return maker(robot, numbers, inside)
     components = robot.margin_components(margin, numbers.fvi, numbers.length)
-    parts = [part for i in range(components.numel()) for part in _parts(robot, components[i], inside)]
+    parts = [part for i in range(components.numel()) for part in _sides(components[i])]
+    if bound > 0.0:
+        parts = [_signed(robot, p.dep(0), inside) if p.op() == ca.OP_FABS else p for p in parts]
     return Claims(ca.vertcat(*parts) - numbers.bound, ca.SX(0, 0))
 
 
-def _parts(robot: Mechanism, component: ca.SX, inside: Array) -> list[ca.SX]:
-    """A minimum's two sides, each to be shown; a modulus with its sign."""
+def _sides(component: ca.SX) -> list[ca.SX]:
+    """A minimum's two sides, each to be shown."""
     if component.op() == ca.OP_FMIN:
-        return [part for side in (0, 1) for part in _parts(robot, component.dep(side), inside)]
-    if component.op() == ca.OP_FABS:
-        return [_signed(robot, component.dep(0), inside)]
+        return [*_sides(component.dep(0)), *_sides(component.dep(1))]
     return [component]
 
 
@@ -109,31 +110,35 @@ def _det_j_x(robot: Mechanism, numbers: Numbers, inside: Array) -> Claims:
     model = robot.model()
     scale = robot.scales(model.g)[1]
     if len(robot.joint_names) != len(robot.pose_names):
-        return Claims(volume(model.j_x_at_pose) ** 2 - (numbers.bound * scale) ** 2, ca.SX(0, 0))
+        square = volume(model.j_x_at_pose) ** 2 - (numbers.bound * scale) ** 2
+        return Claims(ca.vertcat(square, scale - _POSITIVE), ca.SX(0, 0))
     matrix, factors = robot.cleared_j_x()
     n = matrix.shape[0]
     scaling = ca.SX.sym("scaling", n, n)
     at = ca.Function("matrix", [model.pose, model.geometry], [matrix])(inside, robot.geometry.vector())
-    sign = -1.0 if np.linalg.det(np.array(at)) < 0.0 else 1.0
+    sign = -1.0 if np.linalg.det(np.nan_to_num(np.array(at))) < 0.0 else 1.0
     size, product = sign * determinant(scaling), ca.SX(1)
     for i in range(n):
         product *= factors[i]
     expression = determinant(matrix @ scaling) - numbers.bound * scale * product * size
-    return Claims(ca.vertcat(expression, size - _POSITIVE, factors - _POSITIVE), scaling, matrix)
+    positive = ca.vertcat(size, factors, scale) - _POSITIVE
+    return Claims(ca.vertcat(expression, positive), scaling, matrix)
 
 
 def _j_q(robot: Mechanism, numbers: Numbers, inside: Array) -> Claims:
     model = robot.model()
     scale = robot.scales(model.g)[0]
-    return Claims(_signed(robot, model.j_q_at_pose, inside) - numbers.bound * scale, ca.SX(0, 0))
+    moduli = _signed(robot, model.j_q_at_pose, inside)
+    return Claims(ca.vertcat(moduli - numbers.bound * scale, scale - _POSITIVE), ca.SX(0, 0))
 
 
 def _det_j_q(robot: Mechanism, numbers: Numbers, inside: Array) -> Claims:
     model = robot.model()
-    product = ca.SX(1)
+    scale, product = robot.scales(model.g)[0], ca.SX(1)
     for i in range(model.j_q_at_pose.numel()):
-        product *= model.j_q_at_pose[i] / robot.scales(model.g)[0][i]
-    return Claims(_signed(robot, product, inside) - numbers.bound, ca.SX(0, 0))
+        product *= model.j_q_at_pose[i] / scale[i]
+    claim = _signed(robot, product, inside) - numbers.bound
+    return Claims(ca.vertcat(claim, scale - _POSITIVE), ca.SX(0, 0))
 
 
 def _fvi(robot: Mechanism, numbers: Numbers, inside: Array) -> Claims:  # noqa: ARG001

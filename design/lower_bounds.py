@@ -15,6 +15,7 @@ from design.claims import Numbers, claims_of
 from design.region import Region
 from kinematics import FviBounds, Mechanism
 from kinematics.box_program import BoxProgram
+from kinematics.errors import InvalidValue
 from kinematics.interpreter import bulk, evaluate
 from kinematics.interval import enclose
 from kinematics.program import Program
@@ -35,6 +36,14 @@ class LowerBounds:
     def __init__(
         self, robot: Mechanism, region: Region, margin: str, at_least: float, bounds: FviBounds, length: float
     ) -> None:
+        """Build the programs.
+
+        Raises:
+            InvalidValue: an FVI bound or the length is not above 0, on which the lemmas rely.
+        """
+        for value in Numbers.values(1.0, bounds, length):
+            if not (np.isfinite(value) and value > 0.0):
+                raise InvalidValue("FVI bounds and characteristic_length", (bounds, length), "finite numbers > 0")
         model, numbers = robot.model(), Numbers.symbols()
         intervals = [region.intervals[name] for name in robot.pose_names]
         self.free = np.array([i for i, (low, high) in enumerate(intervals) if low < high], dtype=np.int64)
@@ -92,14 +101,16 @@ class LowerBounds:
         if self._matrix is None:
             return np.empty((len(middle), 0))
         (values,) = evaluate(self._matrix, middle)
-        usable = np.isfinite(values).all(axis=(-2, -1))
+        size = np.abs(values).max(axis=(-2, -1), initial=0.0)
+        usable = np.isfinite(size) & (size > 1e-30) & (size < 1e30)  # NaN is neither
         eye = np.eye(self._size)
         result = np.broadcast_to(eye, (len(middle), self._size, self._size)).copy()
-        values = values[usable]
+        size = size[usable][:, None, None]
+        values = values[usable] / size
         if values.shape[-2] != values.shape[-1]:
             values = np.linalg.cholesky(np.swapaxes(values, -1, -2) @ values + 1e-14 * eye, upper=True)
         regular = np.abs(np.linalg.det(values)) > 1e-200
-        result[np.flatnonzero(usable)[regular]] = np.linalg.inv(values[regular])
+        result[np.flatnonzero(usable)[regular]] = np.linalg.inv(values[regular]) / size[regular]
         return np.swapaxes(result, -1, -2).reshape(len(middle), self._size**2)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from design import Box, Cylinder, InvalidRegion, Region, best_bound, certify, worst_poses
-from kinematics import GoughStewart, Heli4, Mechanism, Peppermill, Redundant3T1R, threads
+from kinematics import FviBounds, GoughStewart, Heli4, Mechanism, Peppermill, Redundant3T1R, threads
 from kinematics.errors import InvalidValue
 
 PI = math.pi
@@ -137,6 +137,35 @@ def test_a_bound_below_zero_is_not_proved_out_of_reach_either(monkeypatch: pytes
         assert found.status == "undecided", margin
 
 
+@pytest.mark.parametrize(
+    ("robot", "beyond"),
+    [
+        (Redundant3T1R(), Box(x=0.0, y=(0.0, 2.0), z=0.0, theta=0.0)),
+        (Peppermill(), Box(x=(0.0, 1.0), y=0.0, z=0.0, theta=0.0)),
+    ],
+)
+def test_no_margin_of_any_robot_is_proved_beyond_reach(
+    robot: Mechanism, beyond: Region, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for at_least in (-1.0, 1e-9):
+        for margin in robot.margins[1:]:
+            assert certify(robot, beyond, margin, at_least=at_least, most_boxes=3_000).status == "refuted"
+    monkeypatch.setattr("design.certificate.first_failing", lambda *_: None)
+    for at_least in (-1.0, 1e-9):
+        for margin in robot.margins[1:]:
+            assert certify(robot, beyond, margin, at_least=at_least, most_boxes=3_000).status == "undecided", margin
+
+
+def test_a_modulus_is_above_any_negative_bound_even_where_it_vanishes() -> None:
+    """The sign changes inside, so that no single sign would prove it."""
+    robot = Redundant3T1R()
+    poses = np.array([[0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.4]])
+    assert robot.margin("det_J_x", poses).min() >= 0.0
+    region = Box(x=0.0, y=(-0.05, 0.05), z=(-0.05, 0.05), theta=(-0.2, 0.2))
+    for margin in ("internal_determinant", "det_J_x", "J_q"):
+        assert certify(robot, region, margin, at_least=-1e-3).status == "proved"
+
+
 def test_a_single_pose_is_a_region() -> None:
     home = Box(x=0.0, y=0.0, z=-0.7, theta=0.0)
     value = float(Heli4().margin("J_q", np.array([0.0, 0.0, -0.7, 0.0])))
@@ -179,5 +208,7 @@ def test_wrong_questions_are_named() -> None:
         certify(Heli4(), CYLINDER, "no_such", at_least=0.1)
     with pytest.raises(InvalidValue, match="characteristic_length"):
         certify(Heli4(), CYLINDER, "fvi", at_least=0.1, characteristic_length=0.0)
+    with pytest.raises(InvalidValue, match="FVI bounds"):
+        certify(Heli4(), CYLINDER, "J_q", at_least=0.1, bounds=FviBounds(1.0, 1.0, -1.0, 1.0))
     with pytest.raises(InvalidValue, match="tolerance"):
         best_bound(Heli4(), CYLINDER, "J_q", 0.0)
