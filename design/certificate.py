@@ -134,7 +134,7 @@ def certify(
 def _suspects(robot: Mechanism, region: Region, margin: str, bounds: FviBounds, length: float, about: int) -> Array:
     """(k, n) poses where the margin is lowest as far as a grid and descents tell, the lowest first."""
     if region.dimension == 0:
-        return region.corners(robot.pose_names)
+        return region.from_unit(np.empty((1, 0)), robot.pose_names)
     about = min(about, _MOST_PER_COORDINATE**region.dimension)
     return worst_poses(robot, region, margin, bounds=bounds, characteristic_length=length, about=about).poses
 

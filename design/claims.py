@@ -21,7 +21,8 @@ numbers are right, good ones only make the bounds tight.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from types import SimpleNamespace
 from typing import Any
 
 import casadi as ca
@@ -41,14 +42,14 @@ class Numbers:
     """Symbols of the claim's own numbers, which the geometry's join; all are fixed before anything is evaluated."""
 
     bound: ca.SX
-    fvi: FviBounds
+    fvi: Any  # the fields of FviBounds
     length: Any
 
     @classmethod
     def symbols(cls) -> Numbers:
         """Fresh ones."""
-        symbols: list[Any] = [ca.SX.sym(name) for name in ("speed", "effort", "wanted speed", "wanted force")]
-        return cls(ca.SX.sym("bound"), FviBounds(*symbols), ca.SX.sym("length"))
+        fvi = SimpleNamespace(**{f.name: ca.SX.sym(f.name) for f in fields(FviBounds)})
+        return cls(ca.SX.sym("bound"), fvi, ca.SX.sym("length"))
 
     @property
     def vector(self) -> ca.SX:

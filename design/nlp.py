@@ -45,11 +45,22 @@ class Problem:
         """(k,) lowest and (k,) highest values of the variables."""
         return np.array([v.low for v in self.variables]), np.array([v.high for v in self.variables])
 
+    def starts(self) -> dict[str, int]:
+        """Where each field's first number stands in the geometry's vector."""
+        sizes = self.robot.geometry.sizes()
+        firsts = np.cumsum([0, *sizes.values()])[:-1]
+        return {name: int(first) for name, first in zip(sizes, firsts, strict=True)}
+
     def places(self) -> list[int]:
         """Where each variable stands in the geometry's vector."""
-        starts = np.concatenate([[0], np.cumsum(list(self.robot.geometry.sizes().values()))])
-        start = dict(zip(self.robot.geometry.sizes(), starts, strict=False))
-        return [int(start[v.field]) + v.item for v in self.variables]
+        starts = self.starts()
+        return [starts[v.field] + v.item for v in self.variables]
+
+    def summed(self, limit: SumLimit) -> list[list[int]]:
+        """Places whose sum is limited, one list for each entry of the fields; a plain number counts in every one."""
+        starts, sizes = self.starts(), self.robot.geometry.sizes()
+        entries = range(max(sizes[f] for f in limit.fields))
+        return [[starts[f] + (k if sizes[f] > 1 else 0) for f in limit.fields] for k in entries]
 
     def geometry(self, values: Array) -> Array:
         """The geometry's vector with the variables at these values."""
@@ -94,7 +105,7 @@ def solve(problem: Problem, poses: Array, start: Array) -> NlpSolution:
         f"{r.margin} >= {r.at_least:g}": _mapped(problem, r.margin, poses, geometry) - (r.at_least + problem.spare)
         for r in problem.requirements
     }
-    rows |= {str(limit): limit.at_most - _sum(problem, limit, geometry) for limit in problem.sums}
+    rows |= {str(limit): limit.at_most - _sums(problem, limit, geometry) for limit in problem.sums}
     epigraph = _mapped(problem, problem.objective, poses, geometry) - t
     nlp: dict[str, Any] = {"x": ca.vertcat(scaled, t), "f": -t, "g": ca.vertcat(epigraph, *rows.values())}
     solver = ca.nlpsol("synthesis", "ipopt", nlp, _OPTIONS)
@@ -112,7 +123,7 @@ def solve(problem: Problem, poses: Array, start: Array) -> NlpSolution:
         values=low + span * x[:-1],
         objective=float(x[-1]),
         status=stats["return_status"],
-        converged=bool(stats["success"]),
+        converged=stats["return_status"] == "Solve_Succeeded",
         violations=_violations(rows, np.array(answer["g"]).ravel()[epigraph.shape[0] :]),
         iterations=int(stats["iter_count"]),
         seconds=time.perf_counter() - started,
@@ -143,17 +154,21 @@ def _violations(rows: dict[str, ca.MX], values: Array) -> dict[str, float]:
     return dict(sorted(short.items(), key=lambda item: -item[1]))
 
 
-def _sum(problem: Problem, limit: SumLimit, geometry: ca.MX) -> ca.MX:
-    names = list(problem.robot.geometry.sizes())
-    starts = np.concatenate([[0], np.cumsum(list(problem.robot.geometry.sizes().values()))])
-    return sum((geometry[int(starts[names.index(f)])] for f in limit.fields), ca.MX(0))
+def _sums(problem: Problem, limit: SumLimit, geometry: ca.MX) -> ca.MX:
+    return ca.vertcat(*(sum((geometry[p] for p in places), ca.MX(0)) for places in problem.summed(limit)))
 
 
-def active_sets(problem: Problem, robot: Mechanism, worst: dict[str, float], closeness: float) -> list[str]:
-    """Which bounds, sums and requirements hold the optimum back, in words."""
+def active_sets(problem: Problem, robot: Mechanism, worst: dict[str, float], closeness: float = 1e-3) -> list[str]:
+    """Which bounds, sums and requirements hold the optimum back, in words.
+
+    Args:
+        worst: worst value of each requirement's margin.
+        closeness: relative, to the variable's range or to the bound.
+    """
     found = []
+    vector = robot.geometry.vector()
     sizes = robot.geometry.sizes()
-    for bound, value in zip(problem.variables, robot.geometry.vector()[problem.places()], strict=True):
+    for bound, value in zip(problem.variables, vector[problem.places()], strict=True):
         item = f"[{bound.item}]" if sizes[bound.field] > 1 else ""
         found += [
             f"{bound.field}{item} at its {side} bound {edge:g}"
@@ -161,12 +176,13 @@ def active_sets(problem: Problem, robot: Mechanism, worst: dict[str, float], clo
             if abs(value - edge) <= closeness * (bound.high - bound.low)
         ]
     for limit in problem.sums:
-        total = sum(float(getattr(robot.geometry, f)) for f in limit.fields)
+        total = max(vector[places].sum() for places in problem.summed(limit))
         if total >= limit.at_most * (1.0 - closeness):
             found.append(f"{' + '.join(limit.fields)} at its upper bound {limit.at_most:g}")
     found += [
         f"{requirement.margin} at its lower bound {requirement.at_least:g}"
         for requirement in problem.requirements
-        if worst[requirement.margin] <= requirement.at_least + max(2 * problem.spare, closeness)
+        if worst[requirement.margin]
+        <= requirement.at_least + max(2 * problem.spare, closeness * abs(requirement.at_least))
     ]
     return found

@@ -10,6 +10,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from itertools import product
+from numbers import Real
 
 import numpy as np
 
@@ -38,8 +39,8 @@ class Region(ABC):
         """k, how many coordinates are free."""
 
     @abstractmethod
-    def contains(self, poses: Array, names: Sequence[str]) -> Array:
-        """(..., n) -> (...,) whether each pose is inside, the boundary included up to rounding."""
+    def contains(self, poses: Array, names: Sequence[str], slack: float = _ROUNDING) -> Array:
+        """(..., n) -> (...,) whether each pose is inside, or outside by no more than the slack [m or rad]."""
 
     @abstractmethod
     def outline(self) -> list[Array]:
@@ -64,9 +65,13 @@ class Region(ABC):
         unit = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, self.dimension)
         return self.from_unit(unit, names)
 
-    def corners(self, names: Sequence[str]) -> Array:
-        """(2^k, n) images of the unit cube's corners."""
-        return self.from_unit(np.array(list(product((0.0, 1.0), repeat=self.dimension))), names)
+    def spread(self, names: Sequence[str]) -> Array:
+        """(k, n) few distinct poses that reach every side of the region, corners and middle included."""
+        return np.unique(self.grid(names, (3,) * self.dimension), axis=0)
+
+    def extent(self, names: Sequence[str]) -> Array:
+        """(n,) widths of the coordinates' intervals."""
+        return np.array([self.intervals[name][1] - self.intervals[name][0] for name in names])
 
     def random(self, names: Sequence[str], count: int, rng: np.random.Generator) -> Array:
         """(count, n) poses, uniform over the region's volume."""
@@ -109,10 +114,10 @@ class Box(Region):
                 pose[..., i] = low
         return pose
 
-    def contains(self, poses: Array, names: Sequence[str]) -> Array:
+    def contains(self, poses: Array, names: Sequence[str], slack: float = _ROUNDING) -> Array:
         """Each coordinate between its bounds."""
         low, high = np.array([self._intervals[name] for name in names]).T
-        return ((poses >= low - _ROUNDING) & (poses <= high + _ROUNDING)).all(axis=-1)
+        return ((poses >= low - slack) & (poses <= high + slack)).all(axis=-1)
 
     def outline(self) -> list[Array]:
         """The box's edges."""
@@ -129,12 +134,12 @@ class Cylinder(Region):
     """
 
     def __init__(self, radius: float, **coordinates: Interval) -> None:
-        if not (math.isfinite(radius) and radius > 0.0):
+        self.radius = _number(radius)
+        if not self.radius > 0.0:
             raise InvalidRegion("radius", radius, "a finite length > 0 m")
         for name in ("x", "y"):
             if name in coordinates:
                 raise InvalidRegion(name, coordinates[name], "only the radius for x and y")
-        self.radius = float(radius)
         self._rest = Box(**coordinates)
 
     def __repr__(self) -> str:
@@ -161,12 +166,18 @@ class Cylinder(Region):
         pose[..., [names.index(name) for name in others]] = self._rest.from_unit(unit[..., 2:], others)
         return pose
 
-    def contains(self, poses: Array, names: Sequence[str]) -> Array:
+    def spread(self, names: Sequence[str]) -> Array:
+        """The axis and eight directions at the edge, at three values of each other coordinate."""
+        disc = [(0.0, 0.0), *((1.0, k / 8) for k in range(8))]
+        rest = product((0.0, 0.5, 1.0), repeat=self._rest.dimension)
+        return self.from_unit(np.array([(*d, *r) for r in rest for d in disc]), names)
+
+    def contains(self, poses: Array, names: Sequence[str], slack: float = _ROUNDING) -> Array:
         """Inside the circle, and the other coordinates between their bounds."""
         x, y = poses[..., names.index("x")], poses[..., names.index("y")]
         others = [name for name in names if name not in ("x", "y")]
-        rest = self._rest.contains(poses[..., [names.index(name) for name in others]], others)
-        return rest & (np.hypot(x, y) <= self.radius + _ROUNDING)
+        rest = self._rest.contains(poses[..., [names.index(name) for name in others]], others, slack)
+        return rest & (np.hypot(x, y) <= self.radius + slack)
 
     def outline(self) -> list[Array]:
         """The circles at both ends."""
@@ -175,8 +186,14 @@ class Cylinder(Region):
         return [np.column_stack([ring, np.full(97, z)]) for z in self._rest.intervals.get("z", (0.0,))]
 
 
-def _interval(name: str, value: Interval) -> tuple[float, float]:
-    low, high = (value, value) if isinstance(value, int | float) else value
-    if not (math.isfinite(low) and math.isfinite(high) and low <= high):
-        raise InvalidRegion(name, value, "two finite numbers, the lower first")
-    return float(low), float(high)
+def _interval(name: str, value: object) -> tuple[float, float]:
+    pair = tuple(value) if isinstance(value, list | tuple) else (value, value)
+    low, high = (_number(v) for v in pair) if len(pair) == 2 else (math.nan, math.nan)
+    if not low <= high:
+        raise InvalidRegion(name, value, "a finite number, or two with the lower first")
+    return low, high
+
+
+def _number(value: object) -> float:
+    """The value as a float; NaN where it is no finite number."""
+    return float(value) if isinstance(value, Real) and math.isfinite(value) else math.nan

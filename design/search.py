@@ -45,7 +45,7 @@ class WorstPoses:
 
 def dense_counts(dimension: int, about: int) -> tuple[int, ...]:
     """Equal counts for a grid of roughly `about` poses, odd so that the middle is on it."""
-    each = max(3, round(about ** (1.0 / dimension)))
+    each = max(3, round(about ** (1.0 / max(1, dimension))))
     return (each + 1 - each % 2,) * dimension
 
 
@@ -77,12 +77,15 @@ def worst_poses(
         found = robot.margin(margin, region.from_unit(unit, names), bounds, characteristic_length)
         return np.where(np.isnan(found), -np.inf, found)
 
+    if region.dimension == 0:
+        pose = region.from_unit(np.empty((1, 0)), names)
+        return WorstPoses(value(np.empty((1, 0))), pose, 1)
     unit, sampled = _lowest_of_grid(value, counts, descents)
     unit, values = _descend(value, unit, 1.0 / (np.array(counts) - 1.0))
     order = np.argsort(values, kind="stable")
     unit, values = unit[order], values[order]
     poses = region.from_unit(unit, names)
-    distinct = _distinct(poses, np.ptp(region.corners(names), axis=0) + 1e-12)
+    distinct = _distinct(poses, region.extent(names) + 1e-12)
     return WorstPoses(values[distinct], poses[distinct], sampled)
 
 

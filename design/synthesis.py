@@ -12,12 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from design.errors import SynthesisFailed
-from design.nlp import NlpSolution, Problem, active_sets, solve
+from design.nlp import NlpSolution, Problem, solve
 from design.region import Region
 from design.search import DENSE, WorstPoses, worst_poses
-from kinematics import Mechanism
+from kinematics import Mechanism, UnreachablePose
 
 Array = np.ndarray
+_ATTEMPTS = 200  # geometries drawn for each wanted start
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,6 @@ class Synthesis:
     Attributes:
         robot: the mechanism with the optimal geometry.
         before, after: worst poses of the objective and of each requirement, by margin: prototype and optimum.
-        active: what holds the optimum back.
         rounds: the exchanges.
         status: the solver's last word.
         sampled: poses of each dense grid.
@@ -58,7 +58,6 @@ class Synthesis:
     robot: Mechanism
     before: dict[str, WorstPoses]
     after: dict[str, WorstPoses]
-    active: list[str]
     rounds: list[Round]
     status: str
     sampled: int
@@ -95,8 +94,9 @@ def synthesise(
     names = problem.robot.pose_names
     region.check(names)
     before = worst_of(problem, problem.robot, region, about)
-    poses = np.unique(np.concatenate([region.corners(names), region.grid(names, (3,) * region.dimension)]), axis=0)
-    solution = _best_start(problem, poses, seed, starts, progress)
+    poses = region.spread(names)
+    firsts = _reaching_starts(problem, poses, seed, starts)
+    solution = _best(problem, poses, firsts, progress)
     rounds: list[Round] = []
     while len(rounds) < max_rounds:
         robot = _robot(problem, solution.values)
@@ -104,21 +104,23 @@ def synthesise(
         rounds.append(_round(problem, solution, after, len(poses)))
         progress(f"round {len(rounds)}: {rounds[-1]}")
         if rounds[-1].settled(tolerance):
-            worst = {margin: found.value for margin, found in after.items()}
-            active = active_sets(problem, robot, worst, closeness=1e-3)
-            sampled = after[problem.objective].sampled
-            return Synthesis(robot, before, after, active, rounds, solution.status, sampled)
+            return Synthesis(robot, before, after, rounds, solution.status, after[problem.objective].sampled)
         poses = np.concatenate([poses, *(_offenders(problem, solution, *item) for item in after.items())])
-        solution = solve(problem, poses, solution.values)
-        if not solution.converged:
-            raise _not_converged(f"the NLP over {len(poses)} poses", solution)
+        solution = _again(problem, poses, [solution.values, *firsts])
     raise SynthesisFailed(f"the exchange did not settle; its last round: {rounds[-1]}", solution.status)
 
 
-def _best_start(problem: Problem, poses: Array, seed: int, starts: int, progress: Progress) -> NlpSolution:
-    """The best converged solution from the prototype and random geometries."""
-    firsts = [problem.robot.geometry.vector()[problem.places()]]
-    firsts += _random_starts(problem, poses, np.random.default_rng(seed), starts - 1)
+def _again(problem: Problem, poses: Array, firsts: list[Array]) -> NlpSolution:
+    """The first converged solution; the last optimum may not reach the poses that were added, then the others start."""
+    for first in firsts:
+        solution = solve(problem, poses, first)
+        if solution.converged:
+            return solution
+    raise _not_converged(f"each of the NLP's {len(firsts)} starts over {len(poses)} poses", solution)
+
+
+def _best(problem: Problem, poses: Array, firsts: list[Array], progress: Progress) -> NlpSolution:
+    """The best converged solution of all starts."""
     best: NlpSolution | None = None
     for k, first in enumerate(firsts, start=1):
         solution = solve(problem, poses, first)
@@ -135,16 +137,35 @@ def _not_converged(what: str, solution: NlpSolution) -> SynthesisFailed:
     return SynthesisFailed(f"{what} did not converge{': ' + short if short else ''}", solution.status)
 
 
-def _random_starts(problem: Problem, poses: Array, rng: np.random.Generator, count: int) -> list[Array]:
-    """Random variables whose geometry reaches every pose; the others would start IPOPT on NaN."""
+def _reaching_starts(problem: Problem, poses: Array, seed: int, count: int) -> list[Array]:
+    """Variables of geometries that reach every pose, the prototype's first; the others would start IPOPT on NaN.
+
+    Raises:
+        SynthesisFailed: none of many reaches them all; the one that comes nearest is described.
+    """
     low, high = problem.bounds()
+    rng = np.random.default_rng(seed)
     found: list[Array] = []
-    for _ in range(200 * count):
+    nearest, shortest = problem.robot, -np.inf
+    prototype = np.clip(problem.robot.geometry.vector()[problem.places()], low, high)
+    for attempt in range(_ATTEMPTS * count):
+        values = prototype if attempt == 0 else low + (high - low) * rng.random(len(low))
+        robot = _robot(problem, values)
+        margin = float(np.nan_to_num(robot.margin("reach", poses), nan=-np.inf).min())
+        if margin > 0.0:
+            found.append(values)
+        elif margin > shortest:
+            nearest, shortest = robot, margin
         if len(found) == count:
             break
-        values = low + (high - low) * rng.random(len(low))
-        if _robot(problem, values).margin("reach", poses).min() > 0.0:
-            found.append(values)
+    if not found:
+        try:
+            nearest.require_reachable(poses)
+        except UnreachablePose as error:
+            raise SynthesisFailed(
+                f"none of {_ATTEMPTS * count} geometries within the bounds reaches the region; the nearest: {error}",
+                "not started",
+            ) from error
     return found
 
 

@@ -1,29 +1,43 @@
 """Mechanisms as loop closures, and all that follows from them."""
 
+from kinematics.delta import Delta
 from kinematics.errors import InvalidGeometry, InvalidShape, InvalidValue, LinkwrightError, UnreachablePose
 from kinematics.gough_stewart import GoughStewart
 from kinematics.gough_stewart_geometry import SingularArchitecture
 from kinematics.gough_stewart_modes import LostPaths
 from kinematics.heli4 import Heli4
+from kinematics.hexa import Hexa
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Mechanism
+from kinematics.par4 import Par4
 from kinematics.peppermill import Peppermill
+from kinematics.planar_3prr import Planar3PRR
+from kinematics.planar_3rpr import Planar3RPR
+from kinematics.planar_3rrr import Planar3RRR
 from kinematics.redundant_3t1r import Redundant3T1R
 
-MECHANISMS: dict[str, type[Mechanism]] = {cls.__name__: cls for cls in (Heli4, Redundant3T1R, Peppermill, GoughStewart)}
+_MAIN = (Heli4, Redundant3T1R, Peppermill, GoughStewart)
+_FAMILY = (Planar3RPR, Planar3PRR, Planar3RRR, Delta, Hexa, Par4)
+MECHANISMS: dict[str, type[Mechanism]] = {cls.__name__: cls for cls in (*_MAIN, *_FAMILY)}
 
 __all__ = [
     "MECHANISMS",
+    "Delta",
     "FviBounds",
     "GoughStewart",
     "Heli4",
+    "Hexa",
     "InvalidGeometry",
     "InvalidShape",
     "InvalidValue",
     "LinkwrightError",
     "LostPaths",
     "Mechanism",
+    "Par4",
     "Peppermill",
+    "Planar3PRR",
+    "Planar3RPR",
+    "Planar3RRR",
     "Redundant3T1R",
     "SingularArchitecture",
     "UnreachablePose",

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from typing import TypeVar
 
 import casadi as ca
+import numpy as np
+
+from kinematics.errors import InvalidValue
+
+Record = TypeVar("Record")
 
 
 @dataclass(frozen=True)
@@ -21,3 +27,16 @@ class Bodies:
 
     of_joints: BodySet = field(default_factory=BodySet)
     of_pose: BodySet = field(default_factory=BodySet)
+
+
+def require_masses(inertia: Record) -> Record:
+    """The record itself, whose every number must be finite and not negative.
+
+    Raises:
+        InvalidValue: naming the field.
+    """
+    for f in fields(inertia):  # type: ignore[arg-type]
+        value = getattr(inertia, f.name)
+        if not np.all(np.isfinite(value)) or np.any(np.asarray(value) < 0.0):
+            raise InvalidValue(f"{type(inertia).__name__} {f.name}", value, "finite and >= 0")
+    return inertia

@@ -9,10 +9,13 @@ tau = Q_q + J_m (J_m^T J_m)^-1 Q_x. Actuators = C joints then bear C^-T tau.
 
 from __future__ import annotations
 
+import math
+
 import casadi as ca
 import numpy as np
 
 from kinematics.bodies import BodySet
+from kinematics.errors import InvalidValue
 from kinematics.interpreter import evaluate
 from kinematics.linear import adjugate
 from kinematics.mechanism import Array, Build, Mechanism, checked
@@ -33,6 +36,9 @@ def inverse_dynamics(robot: Mechanism, payload: float, pose: Array, velocity: Ar
     Returns:
         (..., m) torques [N m] or forces [N] at the actuators; NaN out of reach.
     """
+
+    if not (math.isfinite(payload) and payload >= 0.0):
+        raise InvalidValue("payload", payload, "a finite mass >= 0 kg")
 
     def build(model: Model) -> Build:
         rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration")]

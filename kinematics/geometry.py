@@ -37,6 +37,11 @@ def screw_pitch(default: float | tuple[float, ...], *, doc: str) -> Any:
     return field(default=default, metadata={"dimension": "length_per_turn", "minimum": None, "doc": doc})
 
 
+def ratio(default: float, *, doc: str) -> Any:
+    """A number > 0 without unit."""
+    return field(default=default, metadata={"dimension": "none", "minimum": 0.0, "doc": doc})
+
+
 def frame(*, doc: str) -> Any:
     """A homogeneous transform (4, 4), rotation without unit and translation in metres; the identity by default."""
     identity = tuple(tuple(float(i == j) for j in range(4)) for i in range(4))
@@ -64,7 +69,11 @@ class GeometryRecord:
                 raise self._invalid(f.name, given, "finite values")
             minimum = f.metadata["minimum"]
             if minimum is not None and np.any(array <= minimum):
-                raise self._invalid(f.name, given, f"a length > {minimum:g} m")
+                raise self._invalid(
+                    f.name,
+                    given,
+                    f"a length > {minimum:g} m" if f.metadata["dimension"] == "length" else f"a number > {minimum:g}",
+                )
             if f.metadata["dimension"] == "length_per_turn" and np.any(array == 0.0):
                 raise self._invalid(f.name, given, "a pitch other than 0 m/turn")
             object.__setattr__(self, f.name, _frozen(array))
@@ -122,11 +131,6 @@ def _shape(f: Field[Any]) -> tuple[int, ...]:
     return np.shape(f.default)  # type: ignore[arg-type]
 
 
-def _frozen(array: Vector) -> Any:
-    """A number, a tuple, or a tuple of tuples: hashable."""
-    return tuple(_frozen(row) for row in array) if array.ndim else float(array)
-
-
 def _numbers(given: object) -> Vector | None:
     """As an array of floats; None where any of it is not a number, such as text that only looks like one."""
     try:
@@ -134,3 +138,8 @@ def _numbers(given: object) -> Vector | None:
     except ValueError:  # ragged
         return None
     return array.astype(float) if array.dtype.kind in "iuf" else None
+
+
+def _frozen(array: Vector) -> Any:
+    """A number, a tuple, or a tuple of tuples: hashable."""
+    return tuple(_frozen(row) for row in array) if array.ndim else float(array)

@@ -220,6 +220,16 @@ class GoughStewart(Mechanism):
         lengths, jacobian = self._evaluate("newton", lambda m: [m.inverse, m.j_x], pose)
         return lengths, jacobian
 
+    def leg_errors(self, pose: Array, joints: Array) -> tuple[Array, Array]:
+        """(k, 6) what each leg lacks to have the length wanted [m], and the inverse Jacobian (k, 6, 6)."""
+        lengths, jacobian = self.lengths_and_jacobian(pose)
+        return joints - lengths, jacobian
+
+    def leg_sizes(self, joints: Array) -> tuple[Array, Array]:
+        """(k,) mean leg length, and the largest number that rounding of a leg's length comes from [m]."""
+        points = (self.geometry.in_reference_frame(), self.geometry.in_tool_frame())
+        return joints.mean(axis=1), joints.max(axis=1) + sum(float(np.abs(p).max()) for p in points)
+
     def forward(self, joints: Array, start: Array | None = None) -> Array:
         """(..., 6) -> (..., 6): Newton's method from a start near, NaN where it did not converge; [8.6.4.2].
 

@@ -6,7 +6,7 @@ converges quadratically from a pose near enough.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -39,12 +39,22 @@ class ForwardSolution(NamedTuple):
     residual: Array
 
 
-def solve_forward(robot: GoughStewart, joints: Array, start: Array, iterations: int) -> ForwardSolution:
-    """(..., 6) leg lengths and (..., 6) starts."""
+class SixLegs(Protocol):
+    """A platform on six legs whose lengths are known, wherever their base joints are."""
+
+    def leg_errors(self, pose: Array, joints: Array) -> tuple[Array, Array]:
+        """(k, 6) what each leg lacks [m], and the inverse Jacobian (k, 6, 6) [8.20] of the legs."""
+
+    def leg_sizes(self, joints: Array) -> tuple[Array, Array]:
+        """(k,) mean leg length, and the largest number that rounding of an error comes from [m]."""
+
+
+def solve_forward(robot: SixLegs, joints: Array, start: Array, iterations: int) -> ForwardSolution:
+    """(..., 6) joints and (..., 6) starts."""
     lead = joints.shape[:-1]
     joints, pose = joints.reshape(-1, 6), np.array(start).reshape(-1, 6)
     taken, residual = np.zeros(len(pose), dtype=int), np.full(len(pose), np.nan)
-    tolerance = _ROUNDING * _sizes(robot, joints)
+    tolerance = _ROUNDING * robot.leg_sizes(joints)[1]
     active = np.flatnonzero(np.isfinite(joints).all(axis=1) & np.isfinite(pose).all(axis=1))
     for _ in range(iterations):
         if not active.size:
@@ -53,19 +63,17 @@ def solve_forward(robot: GoughStewart, joints: Array, start: Array, iterations: 
         residual[active] = error
         taken[active] += 1
         active = active[np.isfinite(error) & ~(error <= tolerance[active])]
-    lengths, _ = robot.lengths_and_jacobian(pose)
-    residual = np.abs(joints - lengths).max(axis=1)
+    residual = np.abs(robot.leg_errors(pose, joints)[0]).max(axis=1)
     converged = residual <= 10.0 * tolerance
     pose = np.where(converged[:, None], pose, np.nan)
     return ForwardSolution(*(a.reshape(lead + a.shape[1:]) for a in (pose, converged, taken, residual)))
 
 
-def step(robot: GoughStewart, pose: Array, joints: Array) -> tuple[Array, Array]:
+def step(robot: SixLegs, pose: Array, joints: Array) -> tuple[Array, Array]:
     """One step of the iteration, [8.22]-[8.25]: (k, 6) poses and the largest leg error before it, (k,) [m]."""
-    lengths, jacobian = robot.lengths_and_jacobian(pose)
-    error = joints - lengths
+    error, jacobian = robot.leg_errors(pose, joints)
     change = _solved(jacobian, error)
-    size = np.linalg.norm(change[:, 3:], axis=1) + np.linalg.norm(change[:, :3], axis=1) / joints.mean(axis=1)
+    size = np.linalg.norm(change[:, 3:], axis=1) + np.linalg.norm(change[:, :3], axis=1) / robot.leg_sizes(joints)[0]
     change *= np.minimum(1.0, _LONGEST_TURN / np.maximum(size, 1e-300))[:, None]
     turned = turn(change[:, 3:]) @ rotation(pose[:, 3:])
     return np.concatenate([pose[:, :3] + change[:, :3], angles(turned)], axis=1), np.abs(error).max(axis=1)
@@ -91,9 +99,9 @@ def assembly_modes(robot: GoughStewart, joints: Array) -> Array:
     poses = found.pose[found.converged]
     if not len(poses):
         return poses
-    apart = _apart(poses, poses, unit) - _uncertainty(robot, poses, unit)[:, None]
-    poses = poses[[not (apart[i, :i] < 0.0).any() for i in range(len(poses))]]
-    order = np.argsort(_apart(poses, robot.initial_pose[None], robot.characteristic_length)[:, 0], kind="stable")
+    gaps = apart(poses, poses, unit) - _uncertainty(robot, poses, unit)[:, None]
+    poses = poses[[not (gaps[i, :i] < 0.0).any() for i in range(len(poses))]]
+    order = np.argsort(apart(poses, robot.initial_pose[None], robot.characteristic_length)[:, 0], kind="stable")
     return poses[order]
 
 
@@ -104,17 +112,11 @@ def _uncertainty(robot: GoughStewart, poses: Array, unit: float) -> Array:
     return 1e-9 + 1e-13 / np.maximum(smallest, 1e-7)
 
 
-def _apart(first: Array, second: Array, unit: float) -> Array:
+def apart(first: Array, second: Array, unit: float) -> Array:
     """(k, l) distance of poses: translation over `unit` and the chord of the rotation."""
     shift = np.linalg.norm(first[:, None, :3] - second[None, :, :3], axis=-1) / unit
     chord = rotation(first[:, 3:])[:, None] - rotation(second[:, 3:])[None]
     return shift + np.linalg.norm(chord, axis=(-2, -1))
-
-
-def _sizes(robot: GoughStewart, joints: Array) -> Array:
-    """(k,) the largest number that rounding of a leg's length comes from."""
-    points = (robot.geometry.in_reference_frame(), robot.geometry.in_tool_frame())
-    return joints.max(axis=1) + sum(float(np.abs(p).max()) for p in points)
 
 
 def _solved(jacobian: Array, error: Array) -> Array:

@@ -24,6 +24,7 @@ from kinematics.mechanism import Array, Build
 from kinematics.model import Model
 from kinematics.polynomial import real_roots
 from kinematics.rods import RodLevel
+from kinematics.rotary_limbs import Limbs, RotaryLimbs, columns, radial_directions
 
 _UPPER = (0.0, 0.0, 1.0, 1.0)  # which limbs hold the plate that rides on the screw: (7), (8)
 _DEG = math.pi / 180.0
@@ -67,7 +68,7 @@ class Heli4Inertia:
     tool: float = 6e-4
 
 
-class Heli4(RodLevel):
+class Heli4(RotaryLimbs, RodLevel):
     """Pose [x, y, z, theta], joints q1..q4 measured from e_z."""
 
     Geometry = Heli4Geometry
@@ -94,72 +95,20 @@ class Heli4(RodLevel):
     # Points.
 
     @staticmethod
-    def directions(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
-        """u_i (3, 4), radial (1), and e_z x u_i (3, 4), along the actuators' axes."""
-        c, s, zero = ca.cos(g.azimuths).T, ca.sin(g.azimuths).T, ca.SX(1, 4)
-        return ca.vertcat(c, s, zero), ca.vertcat(-s, c, zero)
-
-    @staticmethod
-    def actuator_points(g: SimpleNamespace) -> ca.SX:
-        """P_i (3, 4); (2), (3)."""
-        return g.base_radius * Heli4.directions(g)[0] + _heights(g.height_step * ca.DM(_UPPER))
-
-    @staticmethod
-    def arm_points(joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """A_i (3, 4), where the rods meet the arms; (4), (5)."""
-        radial, _ = Heli4.directions(g)
-        along = ca.mtimes(radial, ca.diag(ca.sin(joints))) + _heights(ca.cos(joints))
-        return Heli4.actuator_points(g) + g.arm_length * along
+    def limbs(g: SimpleNamespace) -> Limbs:
+        """P_i, (2), (3), and the arms' directions, (4), (5): q from e_z outward."""
+        radial, _ = radial_directions(g.azimuths)
+        actuators = g.base_radius * radial + _heights(g.height_step * ca.DM(_UPPER))
+        return Limbs(actuators, columns(ca.SX([0, 0, 1]), 4), radial, g.arm_length, g.rod_length)
 
     @staticmethod
     def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """B_i (3, 4), where the rods meet the plates; (6)-(8), with p in metres per radian."""
         upper = ca.DM(_UPPER)
         heights = g.plate_offset + upper * (g.height_step + g.pitch / TURN * pose[3])
-        return ca.repmat(pose[:3], 1, 4) + g.platform_radius * Heli4.directions(g)[0] + _heights(heights)
+        return ca.repmat(pose[:3], 1, 4) + g.platform_radius * radial_directions(g.azimuths)[0] + _heights(heights)
 
-    # The closure and its closed forms.
-
-    @staticmethod
-    def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """Half of |A_i B_i|^2 - l^2; (9)."""
-        rods = Heli4.arm_points(joints, g) - Heli4.platform_points(pose, g)
-        return (ca.sum1(rods * rods).T - g.rod_length**2) / 2
-
-    @staticmethod
-    def _inverse_terms(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
-        """M_i, N_i, G_i of M cos q + N sin q = G, (10)-(12), and sqrt(M^2 + N^2 - G^2)."""
-        to_actuator = Heli4.actuator_points(g) - Heli4.platform_points(pose, g)
-        radial, _ = Heli4.directions(g)
-        m = 2 * g.arm_length * to_actuator[2, :].T
-        n = 2 * g.arm_length * ca.sum1(to_actuator * radial).T
-        right = g.rod_length**2 - ca.sum1(to_actuator * to_actuator).T - g.arm_length**2
-        return m, n, right, ca.sqrt(m * m + n * n - right * right)
-
-    @staticmethod
-    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """The elbow-out root, in (-pi/2, 3 pi/2]: the cut lies where an arm points inward, not inside the workspace as
-        with (14), which jumps where q passes pi."""
-        m, n, right, root = Heli4._inverse_terms(pose, g)
-        return ca.pi / 2 + ca.atan2(n * root - m * right, n * right + m * root)
-
-    @staticmethod
-    def joint_cosines_and_sines(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
-        """Both from (10) and the root that is kept, without an angle."""
-        m, n, right, root = Heli4._inverse_terms(pose, g)
-        square = m * m + n * n
-        return (m * right - n * root) / square, (n * right + m * root) / square
-
-    @staticmethod
-    def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """How much longer or shorter each rod could be before B_i left the arm's circle [m]."""
-        to_actuator = Heli4.actuator_points(g) - Heli4.platform_points(pose, g)
-        radial, axis = Heli4.directions(g)
-        across = ca.sum1(to_actuator * axis).T
-        distance = ca.sqrt(ca.sum1(to_actuator * radial).T ** 2 + to_actuator[2, :].T ** 2)
-        nearest = ca.sqrt((distance - g.arm_length) ** 2 + across**2)
-        farthest = ca.sqrt((distance + g.arm_length) ** 2 + across**2)
-        return ca.fmin(g.rod_length - nearest, farthest - g.rod_length)
+    # What makes it dimensionless.
 
     @staticmethod
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
@@ -174,8 +123,8 @@ class Heli4(RodLevel):
 
         The paper's (49), (53) and (54) print the opposite sign for p, against its own (6).
         """
-        _, axis = Heli4.directions(g)
-        arms, platforms = Heli4.arm_points(joints, g), Heli4.platform_points(pose, g)
+        _, axis = radial_directions(g.azimuths)
+        arms, platforms = Heli4.limbs(g).elbows(joints), Heli4.platform_points(pose, g)
         rods = []
         for limb in range(4):
             plate = ca.vertcat(displacement[3:5], displacement[5] + displacement[6 + limb // 2])
@@ -191,23 +140,16 @@ class Heli4(RodLevel):
     def internal_determinant_symbolic(cls) -> ca.SX:
         """Expression (59) over d^4 l^4."""
         model = cls.model()
-        rods = model.at_pose(cls.arm_points(model.joints, model.g) - cls.platform_points(model.pose, model.g))
-        _, axis = cls.directions(model.g)
+        rods = model.at_pose(cls.rods(model.pose, model.joints, model.g))
+        _, axis = radial_directions(model.g.azimuths)
         normals = [ca.cross(axis[:, i], rods[:, i]) for i in range(4)]
         lines = ca.cross(normals[0], normals[1]), ca.cross(normals[2], normals[3])
         return ca.cross(*lines)[2] / model.g.rod_length**4
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
         """Arms with their drives and half of the rods; plates, payload, tool and the rods' other half."""
-        i, bodies = self.inertia, Bodies()
-        radial, _ = Heli4.directions(g)
-        rod_end, elbows = i.rod_pair_mass / 2, Heli4.arm_points(joints, g)
-        centre = i.arm_centre * g.arm_length
-        for limb in range(4):
-            swing = radial[:, limb] * ca.sin(joints[limb]) + _E_Z * ca.cos(joints[limb])
-            bodies.of_joints.particles.extend([(i.arm_mass, centre * swing), (rod_end, elbows[:, limb])])
-            own = (i.arm_factor - 1) * i.arm_mass * centre**2  # beyond the particle at the centre of mass
-            bodies.of_joints.rotors.append((i.drive + own, joints[limb]))
+        i, rod_end = self.inertia, self.inertia.rod_pair_mass / 2
+        bodies = self.arm_bodies(joints, g, rod_end)
         upper = pose[:3] + g.pitch / TURN * pose[3] * _E_Z
         bodies.of_pose.particles.extend(
             [(i.plate_masses[0] + payload + 2 * rod_end, pose[:3]), (i.plate_masses[1] + 2 * rod_end, upper)]
@@ -218,8 +160,8 @@ class Heli4(RodLevel):
     @staticmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
         """Actuators' circle, arms, both rods of each limb, the two plates and the tool."""
-        _, axis = Heli4.directions(g)
-        base, arms = Heli4.actuator_points(g), Heli4.arm_points(joints, g)
+        _, axis = radial_directions(g.azimuths)
+        base, arms = Heli4.limbs(g).actuators, Heli4.limbs(g).elbows(joints)
         platform, half = Heli4.platform_points(pose, g), g.parallelogram_width / 2 * axis
         order = [0, 2, 1, 3, 0]
         lines = {"base": base[:, order]}
@@ -240,7 +182,7 @@ class Heli4(RodLevel):
     @staticmethod
     def _plates(model: Model) -> Plates:
         """From s_i = B_i - A_i with both plates at the origin; (18) with h_i minus the actuator's own height."""
-        spheres = Heli4.platform_points(ca.SX(4, 1), model.g) - Heli4.arm_points(model.joints, model.g)
+        spheres = Heli4.platform_points(ca.SX(4, 1), model.g) - Heli4.limbs(model.g).elbows(model.joints)
         return plates(spheres, model.g.rod_length)
 
     def _poses_of(self, joints: Array, w: Array, t: Array) -> Array:

@@ -9,6 +9,7 @@ from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array, Build
 from kinematics.mobility import Joint, JointGraph
 from kinematics.model import Model
+from kinematics.rotary_limbs import radial_directions
 
 _E_Z = np.array([0.0, 0.0, 1.0])
 
@@ -25,9 +26,9 @@ def heli4_joint_graph(robot: Heli4, pose: Array) -> JointGraph:
     robot.require_reachable(pose)
 
     def build(model: Model) -> Build:
-        points = Heli4.actuator_points(model.g), Heli4.arm_points(model.joints, model.g)
+        points = Heli4.limbs(model.g).actuators, Heli4.limbs(model.g).elbows(model.joints)
         platform = Heli4.platform_points(model.pose, model.g)
-        return [model.pose], [model.at_pose(p).T for p in (*points, platform, Heli4.directions(model.g)[1])]
+        return [model.pose], [model.at_pose(p).T for p in (*points, platform, radial_directions(model.g.azimuths)[1])]
 
     pose = np.asarray(pose, dtype=float)
     drives, arms, platforms, axes = evaluate(robot.program("joint_graph", build), pose)

@@ -8,11 +8,13 @@ a characteristic length turns rotations into lengths.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import combinations
 
 import casadi as ca
 
+from kinematics.errors import InvalidValue
 from kinematics.linear import Minors, adjugate
 
 
@@ -31,6 +33,11 @@ class FviBounds:
     joint_effort: float
     speed: float
     force: float
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not (math.isfinite(value) and value > 0.0):
+                raise InvalidValue(f"FviBounds {name}", value, "a finite number > 0")
 
 
 def homogeneous(inverse_jacobian: ca.SX, rotations: tuple[int, ...], characteristic_length: float) -> ca.SX:

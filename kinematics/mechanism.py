@@ -1,20 +1,15 @@
-"""A mechanism is its loop closure; this base derives the rest.
-
-A new mechanism is one file: a `Geometry`, the closure (one row a limb), the closed forms of its inverse and forward
-models, its reach margin and the scales that make its determinants dimensionless. Nothing else is typed in.
-"""
+"""All that follows from a mechanism's definition, over arrays of poses."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable
-from types import SimpleNamespace
-from typing import Any, ClassVar
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import Bodies
+from kinematics.bodies import require_masses
+from kinematics.definition import Definition
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.geometry import GeometryRecord
 from kinematics.indices import (
@@ -34,120 +29,32 @@ Array = np.ndarray
 Build = tuple[list[ca.SX], list[ca.SX]]  # inputs and outputs of a program
 
 
-class Mechanism(ABC):
+class Mechanism(Definition):
     """A parallel mechanism with n freedoms and m actuated joints, one a limb.
 
     Every public method takes poses (..., n) or joints (..., m) with any leading shape.
     """
 
-    Geometry: ClassVar[type[GeometryRecord]]
-    Inertia: ClassVar[type]  # a frozen dataclass of masses, with defaults
-    pose_names: ClassVar[tuple[str, ...]]
-    joint_names: ClassVar[tuple[str, ...]]
-    joint_units: ClassVar[tuple[str, ...]]  # rad or m
-    rotations: ClassVar[tuple[int, ...]]  # which pose coordinates are angles
-    counts_turns: ClassVar[bool] = False  # whether an angle a turn on is another pose, as on a screw
-    home: ClassVar[tuple[float, ...]]  # a pose well inside the workspace
-    fvi_bounds: ClassVar[FviBounds]
-    margins: ClassVar[tuple[str, ...]] = ("reach", "fvi", "J_q", "det_J_q", "det_J_x")
-
     def __init__(self, geometry: GeometryRecord | None = None, inertia: Any = None) -> None:
         self.geometry = geometry if geometry is not None else self.Geometry()
-        self.inertia = inertia if inertia is not None else self.Inertia()
+        if not isinstance(self.geometry, self.Geometry):
+            raise InvalidValue(f"{type(self).__name__} geometry", geometry, f"a {self.Geometry.__name__}")
+        self.inertia = require_masses(inertia if inertia is not None else self.Inertia())
         self._programs: dict[object, Program] = {}
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.geometry})"
 
-    # What a mechanism writes, symbolically; `g` holds the geometry's fields by name.
-
-    @staticmethod
-    @abstractmethod
-    def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(m,) loop closure, one row a limb."""
-
-    @staticmethod
-    @abstractmethod
-    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(m,) joints of the working mode, NaN where a limb cannot reach."""
-
-    @staticmethod
-    @abstractmethod
-    def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """How far each limb is from not reaching [m], one row a limb; negative where it cannot."""
-
-    @staticmethod
-    @abstractmethod
-    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
-        """What J_q's diagonal (m,) and det J_x are divided by, so that both lie in [-1, 1].
-
-        With m > n it is sqrt(det J_x^T J_x) that takes the determinant's place.
-        """
-
-    @abstractmethod
-    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
-        """The masses that the joints and the pose move; `payload` [kg] sits at the tool."""
-
-    @staticmethod
-    @abstractmethod
-    def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
-        """Named polylines (3, k) that draw the mechanism: base, arms, rods, platform."""
-
     @classmethod
-    def drives(cls, g: SimpleNamespace) -> ca.SX:  # noqa: ARG003
-        """(m, m) constant C with actuators = C joints; the identity unless the drives couple joints."""
-        return ca.SX.eye(len(cls.joint_names))
-
-    @staticmethod
-    def joint_cosines_and_sines(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX] | None:  # noqa: ARG004
-        """(m,) cosines and (m,) sines of the joints at a pose, where the joints are revolute."""
-        return None
-
-    @staticmethod
-    def pose_rate_map(pose: ca.SX) -> ca.SX:
-        """(n, n) pose rates from the twist; the identity unless the pose holds Euler angles."""
-        return ca.SX.eye(pose.shape[0])
-
-    @classmethod
-    def closure_by_twist(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(m, n) derivative of the closure by the twist; to be replaced where Euler angles would spoil it."""
-        return ca.jacobian(cls.closure(pose, joints, g), pose) @ cls.pose_rate_map(pose)
+    def model(cls) -> Model:
+        """The symbolic model, shared by all robots of this class."""
+        return model_of(cls)
 
     @classmethod
     def cleared_j_x(cls) -> tuple[ca.SX, ca.SX]:
         """K (m, n) and k (m,) > 0 with J_x = diag(1 / k) K in the working mode; K without the divisors of its rows."""
         model = cls.model()
         return model.j_x_at_pose, ca.SX.ones(model.j_x_at_pose.shape[0])
-
-    @property
-    def actuator_names(self) -> tuple[str, ...]:
-        """What C joints is called; the joints themselves unless the drives couple them."""
-        return self.joint_names
-
-    @property
-    def actuator_units(self) -> tuple[str, ...]:
-        """Rad or m."""
-        return self.joint_units
-
-    @property
-    @abstractmethod
-    def characteristic_length(self) -> float:
-        """What makes a rotation a length [m]."""
-
-    @abstractmethod
-    def assembly_modes(self, joints: Array) -> Array:
-        """(m,) -> (k, n), every real pose with these joints."""
-
-    @abstractmethod
-    def forward(self, joints: Array) -> Array:
-        """(..., m) -> (..., n), the working assembly mode; NaN where there is none."""
-
-    # What follows from it.
-
-    @classmethod
-    def model(cls) -> Model:
-        """The symbolic model, shared by all robots of this class."""
-        return model_of(cls)
 
     def inverse(self, pose: Array) -> Array:
         """(..., n) -> (..., m) joints of the working mode; a NaN row where a limb cannot reach."""
@@ -262,6 +169,15 @@ class Mechanism(ABC):
         )
         model = self.model()
         return dict(zip(self.skeleton(model.pose, model.joints, model.g), (p.T for p in lines), strict=True))
+
+    def singularities(self, pose: Array, tolerance: float = 1e-6) -> dict[str, Array]:
+        """Which kinds of singularity hold at the poses, (...,) each; False where a limb cannot reach.
+
+        `serial` (J_q; the paper's under-mobility), `parallel` (J_x; over-mobility) and, where single rods hold the
+        platform's orientation, `internal` (J_int); each where the normalised margin is at most the tolerance.
+        """
+        kinds = {"serial": "det_J_q", "parallel": "det_J_x", "internal": "internal_determinant"}
+        return {k: self.margin(name, pose) <= tolerance for k, name in kinds.items() if name in self.margins}
 
     def require_reachable(self, pose: Array) -> None:
         """Check every pose.

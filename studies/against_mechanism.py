@@ -116,7 +116,8 @@ def _dimensions(field: GeometryField) -> Key:
 
 
 def _bounds(field: GeometryField) -> Key:
-    return Key(f"low < high{_condition(field)}", Dimension(field.dimension))
+    pairs = f", a pair for each of {math.prod(field.shape)} entries" if field.shape else ""
+    return Key(f"low < high{_condition(field)}{pairs}", Dimension(field.dimension))
 
 
 def _condition(field: GeometryField) -> str:

@@ -1,19 +1,26 @@
-"""Re-verification of a committed `optimum.toml`: every figure computed again and held against the claim."""
+"""Verification of a committed `optimum.toml` from scratch: every entry computed again and held against the claim."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+
+from design import Region
 from design.nlp import Problem
 from kinematics import Mechanism
-from studies import pipeline, setup
+from studies import pipeline
 from studies.load import load_study
-from studies.optimum import FILE, Optimum, optimum_of, read_optimum
+from studies.optimum import FILE, GIVEN, Optimum, optimum_of, read_optimum
 from studies.schema import Study
 
-ROUNDING = 1e-12  # m, of a sum
 AGREE = 1e-6  # relative: what another machine's rounding may change in a figure
+ROUNDING = 1e-9  # m or rad: of a pose in the file, and of a sum
+_SOLVED = "Solve_Succeeded"
 
 
 @dataclass(frozen=True)
@@ -39,26 +46,37 @@ def check_study(study_file: Path) -> list[Row]:
     """Everything that the optimum beside a study file claims.
 
     Raises:
-        StudyError, InvalidOptimum, InvalidGeometry: a file cannot be used at all.
+        StudyError: one of the two files cannot be used at all.
     """
     study = load_study(study_file)
-    optimum_file = study_file.parent / FILE
-    claimed = read_optimum(optimum_file)
-    robot = claimed.robot(optimum_file)
-    rows = [
-        _same("mechanism", study.mechanism, claimed.mechanism),
-        _same("study", study.digest[:12], str(claimed.made_by["study_digest"])[:12]),
+    claimed = read_optimum(study_file.parent / FILE)
+    made_for = _made_for(study, claimed)
+    if not made_for.holds:
+        return [made_for]  # an answer to another question
+    outcome = pipeline.run(study, claimed.robot(study), lambda _: None, compare_cycles=False)
+    return compare(claimed, outcome)
+
+
+def compare(claimed: Optimum, outcome: pipeline.Outcome) -> list[Row]:
+    """Every claim of a file against what its geometry was found to do."""
+    study, problem, robot = outcome.study, outcome.problem, outcome.robot
+    return [
+        _made_for(study, claimed),
+        *_within_bounds(problem, robot),
+        *_requirements(study, outcome),
+        *_at_claimed_poses(claimed, problem, robot, outcome.region),
+        *_entries(claimed, optimum_of(outcome), study),
     ]
-    if not all(row.holds for row in rows):
-        return rows
-    problem = setup.problem_of(study)
-    rows += _within_bounds(problem, robot)
-    found = optimum_of(pipeline.run(study, robot, lambda _: None, compare_cycles=False))
-    return rows + _figures(study, problem, claimed, found) + _cycle(claimed, found)
 
 
-def _same(what: str, expected: str, found: str) -> Row:
-    return Row(what, expected, found, 0.0 if expected == found else -1.0)
+def _made_for(study: Study, claimed: Optimum) -> Row:
+    digest = str(claimed.data["made_by"].get("study_digest"))
+    row = _same("made for this study.toml, unchanged", digest, study.digest)
+    return replace(row, expected=digest[:12], found=study.digest[:12])
+
+
+def _same(what: str, claimed: object, found: object) -> Row:
+    return Row(what, str(claimed), str(found), 0.0 if claimed == found else -1.0)
 
 
 def _within_bounds(problem: Problem, robot: Mechanism) -> list[Row]:
@@ -71,59 +89,86 @@ def _within_bounds(problem: Problem, robot: Mechanism) -> list[Row]:
         rows.append(Row(f"geometry.{bound.field}", f"{bound.low:g} to {bound.high:g}", f"{vector[place]:g}", margin))
     fixed = [k for k in range(len(own)) if k not in places]
     off = max((abs(vector[k] - own[k]) for k in fixed if vector[k] != own[k]), default=0.0)
-    rows.append(Row("geometry, other fields", "the study's", f"off by {off:g}", -off))
+    rows.append(Row("geometry, other fields", "the study's", f"off by {off:g}", 0.0 - off))
     for limit in problem.sums:
-        total = sum(float(getattr(robot.geometry, field)) for field in limit.fields)
-        rows.append(
-            Row(" + ".join(limit.fields), f"<= {limit.at_most:g}", f"{total:g}", limit.at_most - total + ROUNDING)
-        )
+        total = max(vector[entry].sum() for entry in problem.summed(limit))
+        rows.append(Row(str(limit), f"<= {limit.at_most:g}", f"{total:g}", limit.at_most - total + ROUNDING))
     return rows
 
 
-def _figures(study: Study, problem: Problem, claimed: Optimum, found: Optimum) -> list[Row]:
-    """Worst values as claimed, requirements met, and the prototype beaten where there was something to optimise."""
-    rows = [
-        _agrees(f"worst {name}", claimed.figures.get(name), value, found.poses.get(name))
-        for name, value in found.figures.items()
-    ]
-    for requirement in problem.requirements:
-        value = found.figures[requirement.margin]
-        bound = requirement.at_least
-        rows.append(_at_least(f"required {requirement.margin}", bound, value, found.poses[requirement.margin]))
-    if study.optimise is not None and "prototype" in found.figures:
-        objective = problem.objective
-        rows.append(
-            _at_least(
-                f"{objective} beats the prototype",
-                found.figures["prototype"],
-                found.figures[objective],
-                found.poses[objective],
-            )
-        )
+def _requirements(study: Study, outcome: pipeline.Outcome) -> list[Row]:
+    """Requirements met over the region and on the cycle, limits kept, and the prototype beaten."""
+    rows = []
+    for r in outcome.problem.requirements:
+        worst = outcome.worst[r.margin]
+        rows.append(_at_least(f"required {r.margin}", r.at_least, worst.value, worst.pose.tolist()))
+        if r.margin in outcome.on_cycle:
+            rows.append(_at_least(f"required {r.margin} on the cycle", r.at_least, outcome.on_cycle[r.margin], None))
+    if study.optimise is not None and outcome.prototype is not None:
+        name = outcome.problem.objective
+        worst = outcome.worst[name]
+        rows.append(_at_least(f"{name} beats the prototype", outcome.prototype[name].value, worst.value, worst.pose))
+    for name, value in outcome.cycle_figures().get("peak_over_limit", {}).items():
+        rows.append(Row(f"{name}, peak over limit", "<= 1", f"{value:.6f}", 1.0 - value))
     return rows
 
 
-def _cycle(claimed: Optimum, found: Optimum) -> list[Row]:
-    if not found.cycle:
-        return []
-    rows = [_agrees("half cycle [s]", claimed.cycle.get("half_cycle"), found.cycle["half_cycle"], None)]
-    rows += [
-        Row(f"{name} peak over limit", "<= 1", f"{value:.6f}", 1.0 - value)
-        for name, value in found.cycle["peak_over_limit"].items()
-    ]
+def _at_claimed_poses(claimed: Optimum, problem: Problem, robot: Mechanism, region: Region) -> list[Row]:
+    """Each claimed pose lies in the region and has the claimed figure; which of several equal ones is free."""
+    rows = []
+    for name, given in claimed.data["worst_pose"].items():
+        pose = np.array(given, dtype=float) if _numbers(given, len(robot.pose_names)) else None
+        if pose is None or name not in robot.margins or not region.contains(pose, robot.pose_names, ROUNDING):
+            rows.append(Row(f"worst_pose.{name}", "a pose in the region", str(given), -1.0))
+            continue
+        value = robot.margin(name, pose, problem.fvi_bounds, problem.characteristic_length)
+        rows.append(_agrees(f"{name} at worst_pose", claimed.data["figures"].get(name), float(value)))
     return rows
 
 
-def _agrees(what: str, claimed: object, found: float, pose: list[float] | None) -> Row:
-    if not isinstance(claimed, float | int):
-        return Row(what, "a claim", "none in the file", -1.0)
+def _entries(claimed: Optimum, found: Optimum, study: Study) -> list[Row]:
+    """Every other entry of the file against the same entry computed now; none missing, none invented."""
+    ours, theirs = dict(_leaves(found.data)), dict(_leaves(claimed.data))
+    ours["made_by.solver_status"] = _SOLVED if study.optimise else GIVEN  # `check` does not optimise again
+    rows = []
+    for key in dict.fromkeys([*ours, *theirs]):
+        if key.split(".")[0] in ("worst_pose", "geometry") or key == "made_by.study_digest":
+            continue  # these have their own rows
+        if key not in ours or key not in theirs:
+            have, lack = ("the file", "the run") if key in theirs else ("the run", "the file")
+            rows.append(Row(key, f"in {have} only", f"not in {lack}", -1.0))
+        elif isinstance(ours[key], float):
+            rows.append(_agrees(key, theirs[key], ours[key]))
+        else:
+            rows.append(_same(key, theirs[key], ours[key]))
+    missing = set(found.data["worst_pose"]) - set(claimed.data["worst_pose"])
+    return rows + [Row(f"worst_pose.{name}", "a pose", "none in the file", -1.0) for name in sorted(missing)]
+
+
+def _leaves(node: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    if isinstance(node, dict):
+        for key, value in node.items():
+            yield from _leaves(value, f"{path}.{key}" if path else str(key))
+    else:
+        yield path, node
+
+
+def _numbers(value: object, count: int) -> bool:
+    return isinstance(value, list) and len(value) == count and all(type(v) in (int, float) for v in value)
+
+
+def _agrees(what: str, claimed: object, found: float) -> Row:
+    if isinstance(claimed, bool) or not isinstance(claimed, float | int) or not math.isfinite(claimed):
+        return Row(what, str(claimed), f"{found:.9g}", -1.0)
     off = abs(found - claimed)
-    return Row(what, f"{claimed:.9g}", f"{found:.9g}", AGREE * abs(claimed) - off, _pose(pose))
+    return Row(what, f"{claimed:.9g}", f"{found:.9g}", AGREE * max(abs(claimed), ROUNDING) - off)
 
 
-def _at_least(what: str, bound: float, found: float, pose: list[float]) -> Row:
-    return Row(what, f">= {bound:g}", f"{found:.9g}", found - bound, _pose(pose))
+def _at_least(what: str, bound: float, found: float, pose: Any) -> Row:
+    where = "" if pose is None else shown_pose(pose)
+    return Row(what, f">= {bound:g}", f"{found:.9g}", found - bound, where)
 
 
-def _pose(pose: list[float] | None) -> str:
-    return "" if pose is None else f"({', '.join(f'{round(v, 6) + 0.0:.4g}' for v in pose)})"
+def shown_pose(pose: Any) -> str:
+    """A pose for people: short, and without negative zeros."""
+    return f"({', '.join(f'{round(float(v), 6) + 0.0:.4g}' for v in pose)})"

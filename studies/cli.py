@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -62,14 +64,14 @@ def run(
 ) -> None:
     """The whole way: optimise, search densely, time the cycle, verify, write set-points and report."""
     from studies import console
-    from studies.outputs import write_outcome
+    from studies.outputs import write_run
 
     asked = _load(study)
-    outcome = _outcome(asked, None)
     folder = out or Path("out") / asked.name
-    files = write_outcome(
-        outcome, folder, f"linkwright run {study}", beside=_study_file(study).parent if commit else None
-    )
+    beside = _study_file(study).parent if commit else None
+    _require_writable(folder, beside)
+    outcome = _outcome(asked, None)
+    files = write_run(outcome, folder, f"linkwright run {study}", beside)
     console.print_outcome(outcome, files, json)
 
 
@@ -91,14 +93,15 @@ def trajectory(
 ) -> None:
     """Time and verify the study's cycle on its committed optimum; with --out, write the set-points."""
     from kinematics.errors import InvalidValue
-    from studies import console, setup
+    from studies import console
     from studies.outputs import write_setpoints
     from studies.pipeline import time_cycle
 
     asked = _load(study)
     if asked.trajectory is None:
         raise InvalidValue(f"study {asked.name}", "no [trajectory] table", "one with the cycle to time")
-    robot = (None if prototype else _committed(study)) or setup.robot_of(asked)
+    robot = _robot(study, asked, prototype)
+    _require_writable(out)
     with console.progress() as tell:
         tell("cycle")
         timing = time_cycle(asked.trajectory, robot)
@@ -110,13 +113,15 @@ def report(
     study: StudyArgument, out: OutOption = None, json: JsonOption = False, prototype: PrototypeOption = False
 ) -> None:
     """Write the report and the set-points of the committed optimum; nothing is optimised."""
-    from studies import console, setup
-    from studies.outputs import write_outcome
+    from studies import console
+    from studies.outputs import write_report
 
     asked = _load(study)
-    robot = (None if prototype else _committed(study)) or setup.robot_of(asked)
+    robot = _robot(study, asked, prototype)
+    folder = out or Path("out") / asked.name
+    _require_writable(folder)
     outcome = _outcome(asked, robot)
-    files = write_outcome(outcome, out or Path("out") / asked.name, f"linkwright report {study}", beside=None)
+    files = write_report(outcome, folder, f"linkwright report {study}")
     console.print_outcome(outcome, files, json)
 
 
@@ -147,11 +152,9 @@ def check(
 
 def main() -> None:
     """Entry point: an error on purpose becomes its message and its exit status, never a traceback."""
+    signal.signal(signal.SIGINT, _interrupted)
     try:
         app()
-    except KeyboardInterrupt:
-        print("interrupted; nothing was left half-written", file=sys.stderr)
-        sys.exit(130)
     except Exception as error:
         from kinematics.errors import LinkwrightError
 
@@ -159,6 +162,13 @@ def main() -> None:
             raise
         print(f"linkwright: {error}", file=sys.stderr)
         sys.exit(error.exit_status)
+
+
+def _interrupted(*_: object) -> None:
+    """Stop at once: an exception would be swallowed inside the solver, which then answers as if nothing had been."""
+    show_cursor = "\x1b[?25h" if sys.stderr.isatty() else ""
+    os.write(2, f"{show_cursor}\nlinkwright: interrupted, nothing was left half-written\n".encode())
+    os._exit(130)
 
 
 def _study_file(given: str) -> Path:
@@ -169,16 +179,27 @@ def _study_file(given: str) -> Path:
 
 def _load(given: str) -> Study:
     from studies.load import load_study
+    from studies.setup import require_cycle_inside
 
-    return load_study(_study_file(given))
+    study = load_study(_study_file(given))
+    require_cycle_inside(study, _study_file(given))
+    return study
 
 
-def _committed(given: str) -> Mechanism | None:
-    """The robot of the optimum beside the study; None where there is no such file."""
-    from studies.optimum import FILE, read_optimum
+def _require_writable(*folders: Path | None) -> None:
+    from trajectory import require_writable
 
-    file = _study_file(given).parent / FILE
-    return read_optimum(file).robot(file) if file.is_file() else None
+    for folder in folders:
+        if folder is not None:
+            require_writable(folder)
+
+
+def _robot(given: str, asked: Study, prototype: bool) -> Mechanism:
+    """The committed optimum beside the study, or the study's own geometry."""
+    from studies import setup
+    from studies.optimum import committed
+
+    return (None if prototype else committed(asked, _study_file(given).parent)) or setup.robot_of(asked)
 
 
 def _outcome(asked: Study, robot: Any) -> Outcome:

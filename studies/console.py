@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Column, Table
 from rich.text import Text
 
-from studies.check import Row
+from studies.check import Row, shown_pose
 from studies.pipeline import Outcome, Timing
 
 
@@ -53,7 +53,7 @@ def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]
     )
     for row in rows:
         table.add_row(*(Text(str(cell)) for cell in row))
-    width = None if console.is_terminal else max(console.width, 160)
+    width = None if console.is_terminal else max(console.width, 240)
     Console(width=width).print(table, soft_wrap=not console.is_terminal)
     Console().print()
 
@@ -70,7 +70,7 @@ def print_outcome(outcome: Outcome, files: list[Path], as_json: bool) -> None:
             wanted.get(margin, ""),
             f"{outcome.prototype[margin].value:.6f}" if outcome.prototype else "",
             f"{worst.value:.6f}",
-            _pose(worst.pose),
+            shown_pose(worst.pose),
         )
         for margin, worst in outcome.worst.items()
     ]
@@ -89,21 +89,27 @@ def print_outcome(outcome: Outcome, files: list[Path], as_json: bool) -> None:
     if geometry:
         print_table("Geometry", ("field", "prototype", "result"), geometry)
     if outcome.synthesis:
-        print_table("Held back by", ("active constraint",), [(item,) for item in outcome.synthesis.active])
+        print_table("Held back by", ("active constraint",), [(item,) for item in outcome.active])
     if outcome.timing:
-        print_timing(outcome.timing, [], False)
+        print_timing(outcome.timing, [], False, outcome.prototype_timing)
     _print_files(files)
 
 
-def print_timing(timing: Timing, files: list[Path], as_json: bool) -> None:
-    """The cycle's figures and peaks."""
+def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Timing | None = None) -> None:
+    """The cycle's figures and peaks; the prototype's figures beside them where they are known."""
+    robot, figures = timing.cycle.robot, timing.figures()
     if as_json:
-        print_json({**timing.figures(), "seconds": timing.seconds, "files": files})
+        made_for = {"mechanism": type(robot).__name__, "geometry_hash": robot.geometry.digest}
+        print_json({**made_for, **figures, "seconds": timing.seconds, "files": files})
         return
-    figures = {k: v for k, v in timing.figures().items() if k != "peak_over_limit"}
-    print_table(
-        "Cycle", ("figure", "value"), [(k, f"{v:.6g}" if isinstance(v, float) else v) for k, v in figures.items()]
-    )
+    names = [name for name in figures if name != "peak_over_limit"]
+    title = f"Cycle of {type(robot).__name__}, geometry {robot.geometry.digest[:12]}"
+    if prototype:
+        before = prototype.figures()
+        rows = [(name, _figure(before[name]), _figure(figures[name])) for name in names]
+        print_table(title, ("figure", "prototype", "result"), rows)
+    else:
+        print_table(title, ("figure", "value"), [(name, _figure(figures[name])) for name in names])
     verification = timing.cycle.pieces[0].timed.verification
     print_table(
         "Way there, between the gridpoints too",
@@ -136,20 +142,23 @@ def _outcome_data(outcome: Outcome, files: list[Path]) -> dict[str, Any]:
         "geometry": outcome.robot.geometry.as_dict(),
         "worst": {m: {"value": w.value, "pose": w.pose.tolist()} for m, w in outcome.worst.items()},
         "prototype": {m: w.value for m, w in outcome.prototype.items()} if outcome.prototype else None,
-        "active": outcome.synthesis.active if outcome.synthesis else [],
+        "active": outcome.active,
+        "region": repr(outcome.region),
         "rounds": [vars(r) for r in outcome.synthesis.rounds] if outcome.synthesis else [],
-        "cycle": outcome.timing.figures() if outcome.timing else None,
+        "cycle": outcome.cycle_figures() or None,
+        "cycle_header": dict(outcome.timing.setpoints.header) if outcome.timing else None,
+        "prototype_cycle": outcome.prototype_timing.figures() if outcome.prototype_timing else None,
         "files": files,
     }
+
+
+def _figure(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _print_files(files: list[Path]) -> None:
     for file in files:
         print(f"wrote {file}")
-
-
-def _pose(pose: Iterable[float]) -> str:
-    return f"({', '.join(f'{round(v, 6) + 0.0:.4g}' for v in pose)})"
 
 
 def _plain(value: Any) -> Any:

@@ -49,6 +49,30 @@ class StudyError(LinkwrightError):
         return "\n".join(map(str, self.problems))
 
 
+@dataclass(frozen=True)
+class Failed:
+    """A requirement that is not met: what was wanted, the worst value found, and at which pose (empty: on a path)."""
+
+    margin: str
+    at_least: float
+    found: float
+    pose: tuple[float, ...]
+
+    def __str__(self) -> str:
+        where = f" at pose ({', '.join(f'{v:.6g}' for v in self.pose)})" if self.pose else ""
+        return f"{self.margin}: found {self.found:.6g}{where}; expected at least {self.at_least:g}"
+
+
+class RequirementFailed(LinkwrightError):
+    """The geometry does not meet its requirements; `failed` holds each one."""
+
+    exit_status = 1
+
+    def __init__(self, failed: Sequence[Failed]) -> None:
+        self.failed = tuple(failed)
+        super().__init__("requirements fail, nothing was written:\n  " + "\n  ".join(map(str, self.failed)))
+
+
 def dotted(path: KeyPath) -> str:
     """`path` as the file spells it; a row of an array of tables is told by its line, not by a number."""
     names = (part for part in path if isinstance(part, str))

@@ -16,6 +16,8 @@ class UnknownStudy(LinkwrightError):
 
     def __init__(self, found: str, known: list[str]) -> None:
         self.found, self.known = found, known
+        if Path(found).is_dir():
+            found = f"{found}, a folder without {FILE},"
         near = difflib.get_close_matches(found, known, n=1)
         hint = f" (did you mean {near[0]}?)" if near else ""
         super().__init__(f"study: found {found}; expected one of {', '.join(known)}, or a path to a {FILE}{hint}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -10,76 +9,63 @@ from typing import Any
 
 import tomli_w
 
-from design.search import WorstPoses
 from kinematics import Mechanism
-from kinematics.errors import LinkwrightError
-from studies.mechanisms import mechanism_class, mechanism_names
+from kinematics.errors import InvalidGeometry
+from studies.errors import KeyPath, StudyError, spelled
+from studies.mechanisms import mechanism_class
 from studies.pipeline import Outcome
+from studies.schema import Study
+from studies.toml_file import TomlFile, read_toml
 
 FILE = "optimum.toml"
-
-
-class InvalidOptimum(LinkwrightError):
-    """An `optimum.toml` that cannot be read or does not belong to its study."""
-
-    def __init__(self, path: Path, key: str, found: object, expected: str) -> None:
-        self.path, self.key, self.found, self.expected = path, key, found, expected
-        super().__init__(f"{path}: {key}: found {found}; expected {expected}")
+GIVEN = "geometry given by the study"
+_TABLES = ("made_by", "geometry", "figures", "worst_pose", "cycle")
 
 
 @dataclass(frozen=True)
 class Optimum:
-    """What the file holds.
+    """The file's content.
 
     Attributes:
-        mechanism: the class's name.
-        geometry: by the fields' names.
-        figures: worst value of each margin over the region by its name; the prototype's objective as `prototype`.
-        poses: where each worst value is.
-        cycle: figures of the timed cycle; empty where the study asks for none.
-        made_by: version, study digest, seed, solver status, sample size, characteristic length [m].
-        active: what holds the optimum back.
+        data: `mechanism`, `active` (what holds the optimum back) and the tables `made_by`, `geometry` (by the fields'
+            names), `figures` (worst value of each margin; the prototype's objective as `prototype`), `worst_pose`
+            (where each one is) and `cycle` (empty where the study asks for none).
+        file: where it was read from.
     """
 
-    mechanism: str
-    geometry: dict[str, Any]
-    figures: dict[str, float]
-    poses: dict[str, list[float]]
-    cycle: dict[str, Any]
-    made_by: dict[str, Any]
-    active: list[str]
+    data: dict[str, Any]
+    file: TomlFile | None = None
 
     def text(self) -> str:
         """The file."""
-        header = "# Written by linkwright; `linkwright check` re-verifies every figure.\n"
-        return header + tomli_w.dumps(
-            {
-                "mechanism": self.mechanism,
-                "active": self.active,
-                "made_by": self.made_by,
-                "geometry": self.geometry,
-                "figures": self.figures,
-                "worst_pose": self.poses,
-                "cycle": self.cycle,
-            },
-            multiline_strings=False,
-        )
+        header = "# Written by linkwright; `linkwright check` verifies it again, figure by figure.\n"
+        return header + tomli_w.dumps(self.data, multiline_strings=False)
 
-    def robot(self, path: Path) -> Mechanism:
-        """The mechanism with this geometry; `path` is named where it is impossible.
+    def fault(self, path: KeyPath, found: str, expected: str) -> StudyError:
+        """An error at a key of the file."""
+        assert self.file is not None
+        return StudyError([self.file.problem(path, found, expected)])
+
+    def robot(self, study: Study) -> Mechanism:
+        """The study's mechanism with this geometry.
 
         Raises:
-            InvalidOptimum: an unknown mechanism or field.
-            InvalidGeometry: an impossible value.
+            StudyError: another mechanism, a missing or unknown field, or an impossible value, with its line.
         """
-        if self.mechanism not in mechanism_names():
-            raise InvalidOptimum(path, "mechanism", self.mechanism, f"one of {', '.join(mechanism_names())}")
-        kind = mechanism_class(self.mechanism)
-        known = kind.Geometry.sizes()
-        for field in self.geometry:
+        if self.data["mechanism"] != study.mechanism:
+            raise self.fault(("mechanism",), spelled(self.data["mechanism"]), f"the study's, {study.mechanism}")
+        kind = mechanism_class(study.mechanism)
+        given, known = self.data["geometry"], kind.Geometry.sizes()
+        for field in given:
             if field not in known:
-                raise InvalidOptimum(path, f"geometry.{field}", "an unknown field", f"one of {', '.join(known)}")
-        return kind(kind.Geometry(**{k: tuple(v) if isinstance(v, list) else v for k, v in self.geometry.items()}))
+                raise self.fault(("geometry", field), "an unknown field", f"one of {', '.join(known)}")
+        for field in known:
+            if field not in given:
+                raise self.fault(("geometry",), f"no {field}", f"all of {', '.join(known)}")
+        try:
+            return kind(kind.Geometry(**{name: _tuples(value) for name, value in given.items()}))
+        except InvalidGeometry as error:
+            raise self.fault(("geometry", error.field), spelled(given[error.field]), error.expected) from error
 
 
 def optimum_of(outcome: Outcome) -> Optimum:
@@ -89,20 +75,23 @@ def optimum_of(outcome: Outcome) -> Optimum:
     if outcome.prototype is not None:
         figures["prototype"] = outcome.prototype[objective].value
     return Optimum(
-        mechanism=study.mechanism,
-        geometry=outcome.robot.geometry.as_dict(),
-        figures=figures,
-        poses={margin: _plain(worst) for margin, worst in outcome.worst.items()},
-        cycle=outcome.timing.figures() if outcome.timing else {},
-        made_by={
-            "version": version("linkwright"),
-            "study_digest": study.digest,
-            "seed": study.optimise.seed if study.optimise else 0,
-            "solver_status": synthesis.status if synthesis else "geometry given by the study",
-            "sampled_poses": outcome.worst[objective].sampled,
-            "characteristic_length": outcome.problem.characteristic_length,
-        },
-        active=synthesis.active if synthesis else [],
+        {
+            "mechanism": study.mechanism,
+            "active": outcome.active,
+            "made_by": {
+                "version": version("linkwright"),
+                "study_digest": study.digest,
+                "seed": study.optimise.seed if study.optimise else 0,
+                "solver_status": synthesis.status if synthesis else GIVEN,
+                "sampled_poses": outcome.worst[objective].sampled,
+                "characteristic_length": outcome.problem.characteristic_length,
+                "geometry_hash": outcome.robot.geometry.digest,
+            },
+            "geometry": outcome.robot.geometry.as_dict(),
+            "figures": figures,
+            "worst_pose": {m: [round(float(v), 9) + 0.0 for v in w.pose] for m, w in outcome.worst.items()},
+            "cycle": outcome.cycle_figures(),
+        }
     )
 
 
@@ -110,38 +99,37 @@ def read_optimum(path: Path) -> Optimum:
     """Read an `optimum.toml`.
 
     Raises:
-        InvalidOptimum: missing, not TOML, or a part missing or of the wrong kind.
+        StudyError: missing, not TOML, or a part missing or of the wrong kind, with its line.
     """
-    try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InvalidOptimum(path, "file", error.strerror, "a readable file, made by `linkwright run`") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InvalidOptimum(path, "TOML", error, "a TOML file in UTF-8") from error
-    parts: dict[str, Any] = {}
-    kinds = {"mechanism": str, "geometry": dict, "figures": dict, "made_by": dict, "worst_pose": dict, "cycle": dict}
-    for key, kind in {**kinds, "active": list}.items():
-        parts[key] = _of_kind(path, data, key, kind)
-    for key, value in parts["figures"].items():
-        if not isinstance(value, float | int) or isinstance(value, bool):
-            raise InvalidOptimum(path, f"figures.{key}", value, "a number")
-    _of_kind(path, parts["made_by"], "study_digest", str, "made_by.")
-    return Optimum(
-        mechanism=parts["mechanism"],
-        geometry=parts["geometry"],
-        figures=parts["figures"],
-        poses=parts["worst_pose"],
-        cycle=parts["cycle"],
-        made_by=parts["made_by"],
-        active=parts["active"],
-    )
+    optimum = Optimum((file := read_toml(path)).data, file)
+    for key, kind, words in (("mechanism", str, "a name"), ("active", list, "a list"), *_tables()):
+        if not isinstance(optimum.data.get(key), kind):
+            raise optimum.fault((key,), spelled(optimum.data[key]) if key in optimum.data else "nothing", words)
+    for name, value in optimum.data["figures"].items():
+        if isinstance(value, bool) or not isinstance(value, float | int):
+            raise optimum.fault(("figures", name), spelled(value), "a number")
+    return optimum
 
 
-def _of_kind(path: Path, data: dict[str, Any], key: str, kind: type, prefix: str = "") -> Any:
-    if not isinstance(data.get(key), kind):
-        raise InvalidOptimum(path, f"{prefix}{key}", data.get(key, "nothing"), f"a {kind.__name__}")
-    return data[key]
+def committed(study: Study, folder: Path) -> Mechanism | None:
+    """The robot of the optimum beside a study; None where the study gives its geometry itself.
+
+    Raises:
+        StudyError: the file is missing, cannot be used, or was made for another state of the study.
+    """
+    if study.optimise is None:
+        return None
+    optimum = read_optimum(folder / FILE)
+    made_for = optimum.data["made_by"].get("study_digest")
+    if made_for != study.digest:
+        asked = f"{study.digest}, this study's; run it again with --commit, or use --prototype"
+        raise optimum.fault(("made_by", "study_digest"), spelled(made_for), asked)
+    return optimum.robot(study)
 
 
-def _plain(worst: WorstPoses) -> list[float]:
-    return [round(float(v), 9) + 0.0 for v in worst.pose]
+def _tables() -> list[tuple[str, type, str]]:
+    return [(name, dict, "a table") for name in _TABLES]
+
+
+def _tuples(value: Any) -> Any:
+    return tuple(_tuples(v) for v in value) if isinstance(value, list) else value

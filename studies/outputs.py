@@ -11,23 +11,30 @@ from trajectory import write_files
 from trajectory.setpoint_file import setpoints_text
 
 
-def write_outcome(outcome: Outcome, folder: Path, command: str, beside: Path | None) -> list[Path]:
-    """Report, optimum and set-points; `beside` is the study's folder where the optimum is to be committed too.
+def write_run(outcome: Outcome, folder: Path, command: str, beside: Path | None) -> list[Path]:
+    """Optimum, report and set-points; `beside` is the study's folder where the optimum is to be committed too.
 
     Raises:
+        RequirementFailed: a requirement is not met; nothing is written then.
         CannotWrite: the folder cannot be written to.
     """
+    outcome.require_all()
     optimum = optimum_of(outcome).text()
-    pictures = pictures_of(outcome)
-    files: dict[str, str | bytes] = {
-        FILE: optimum,
-        "report.html": html_report(outcome, pictures, command),
-        "mechanism.png": pictures[0][1],
-    }
-    if outcome.timing is not None:
-        files |= _setpoints(outcome.timing)
-    written = write_files(folder, files)
+    written = write_files(folder, {FILE: optimum, **_report(outcome, command)})
     return written + (write_files(beside, {FILE: optimum}) if beside else [])
+
+
+def write_report(outcome: Outcome, folder: Path, command: str) -> list[Path]:
+    """Report and set-points, as `write_run` but for the optimum."""
+    outcome.require_all()
+    return write_files(folder, _report(outcome, command))
+
+
+def _report(outcome: Outcome, command: str) -> dict[str, str | bytes]:
+    pictures = pictures_of(outcome)
+    files: dict[str, str | bytes] = {"report.html": html_report(outcome, pictures, command)}
+    files["mechanism.png"] = pictures[0][1]
+    return files | (_setpoints(outcome.timing) if outcome.timing else {})
 
 
 def write_setpoints(timing: Timing, folder: Path) -> list[Path]:

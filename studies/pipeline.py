@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from design.nlp import Problem
+import numpy as np
+
+from design.nlp import Problem, active_sets
 from design.region import Region
 from design.search import WorstPoses
 from design.synthesis import Progress, Synthesis, synthesise, worst_of
 from kinematics import Mechanism
 from studies import schema, setup
+from studies.errors import Failed, RequirementFailed
 from studies.schema import Study
 from trajectory import Approach, Cycle, Setpoints, cycle_setpoints, there_and_back
 
@@ -64,6 +68,7 @@ class Outcome:
         synthesis: how it was found; None where the geometry was given.
         worst: the worst pose of each margin, by its name.
         prototype: the same for the prototype, where a synthesis changed it.
+        on_cycle: the worst value of each requirement's margin on the cycle's path; empty without a cycle.
         timing: the cycle; None where the study asks for none.
         prototype_timing: the prototype's cycle, to compare with.
     """
@@ -75,8 +80,39 @@ class Outcome:
     synthesis: Synthesis | None
     worst: dict[str, WorstPoses]
     prototype: dict[str, WorstPoses] | None
+    on_cycle: dict[str, float]
     timing: Timing | None
     prototype_timing: Timing | None
+
+    @property
+    def active(self) -> list[str]:
+        """What holds the optimum back; empty where nothing was optimised."""
+        if self.study.optimise is None:
+            return []
+        return active_sets(self.problem, self.robot, {margin: worst.value for margin, worst in self.worst.items()})
+
+    def cycle_figures(self) -> dict[str, Any]:
+        """What the cycle claims, as plain data; empty without one."""
+        if self.timing is None:
+            return {}
+        return {**self.timing.figures(), "worst_on_the_path": self.on_cycle}
+
+    def require_all(self) -> None:
+        """Check every requirement, over the region and on the cycle's path.
+
+        Raises:
+            RequirementFailed: with each one that fails.
+        """
+        failed = []
+        for requirement in self.problem.requirements:
+            worst = self.worst[requirement.margin]
+            if not worst.value >= requirement.at_least:
+                failed.append(Failed(requirement.margin, requirement.at_least, worst.value, tuple(worst.pose.tolist())))
+            on_path = self.on_cycle.get(requirement.margin, math.inf)
+            if not on_path >= requirement.at_least:
+                failed.append(Failed(f"{requirement.margin} on the cycle", requirement.at_least, on_path, ()))
+        if failed:
+            raise RequirementFailed(failed)
 
 
 def optimise(study: Study, progress: Progress) -> Synthesis:
@@ -89,6 +125,17 @@ def optimise(study: Study, progress: Progress) -> Synthesis:
         about=study.dense_sample,
         progress=progress,
     )
+
+
+def margins_on_path(problem: Problem, robot: Mechanism, asked: schema.Trajectory) -> dict[str, float]:
+    """The worst value of each requirement's margin on the cycle's path; NaN counts as -inf."""
+    path = setup.cycle_of(asked.cycle)
+    (poses,) = path.evaluate(np.linspace(0.0, path.length, asked.grid + 1), 0)
+    found = {}
+    for requirement in problem.requirements:
+        values = robot.margin(requirement.margin, poses, problem.fvi_bounds, problem.characteristic_length)
+        found[requirement.margin] = float(np.where(np.isnan(values), -np.inf, values).min())
+    return found
 
 
 def time_cycle(asked: schema.Trajectory, robot: Mechanism) -> Timing:
@@ -104,9 +151,8 @@ def time_cycle(asked: schema.Trajectory, robot: Mechanism) -> Timing:
     points = cycle_setpoints(cycle, asked.period, robot.actuator_units)
     approach = None
     if asked.approach is not None:
-        approach = plan_approach(
-            robot, points.pose[0], setup.limits_of(asked.approach), payload, asked.period, robot.actuator_units
-        )
+        gentle = setup.approach_limits(asked.approach, limits, len(robot.joint_names))
+        approach = plan_approach(robot, points.pose[0], gentle, payload, asked.period, robot.actuator_units)
     return Timing(cycle, points, approach, seconds)
 
 
@@ -128,9 +174,11 @@ def run(study: Study, robot: Mechanism | None, progress: Progress, compare_cycle
         if robot.geometry != problem.robot.geometry:
             before = worst_of(problem, problem.robot, region, study.dense_sample)
     timing = prototype_timing = None
+    on_cycle: dict[str, float] = {}
     if study.trajectory is not None:
         progress("cycle")
+        on_cycle = margins_on_path(problem, robot, study.trajectory)
         timing = time_cycle(study.trajectory, robot)
         if before is not None and compare_cycles:
             prototype_timing = time_cycle(study.trajectory, problem.robot)
-    return Outcome(study, problem, region, robot, synthesis, worst, before, timing, prototype_timing)
+    return Outcome(study, problem, region, robot, synthesis, worst, before, on_cycle, timing, prototype_timing)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import matplotlib as mpl
@@ -25,6 +26,7 @@ _LINES = {
     "platform": (_COLOURS[1], 3.0),
     "tool": (_COLOURS[2], 2.0),
 }
+_DASHES = ("-", "--")  # symmetric joints move alike: every second one leaves gaps for the other
 _OTHERS = 289  # about how many poses of the other coordinates stand behind a point of a map
 _STYLE: Any = {
     "font.size": 9,
@@ -53,14 +55,22 @@ class Section:
     worst: Array
 
 
-def section_of(problem: Problem, robot: Mechanism, region: Region, margin: str, size: int = 61) -> Section:
+def can_be_mapped(region: Region, names: Sequence[str]) -> bool:
+    """Whether the region has a plane to draw."""
+    return len(_free(region, names)) >= 2
+
+
+def _free(region: Region, names: Sequence[str]) -> list[str]:
+    return [n for n in names if region.intervals[n][0] < region.intervals[n][1]]
+
+
+def section_of(problem: Problem, robot: Mechanism, region: Region, margin: str, size: int = 81) -> Section:
     """The region's first two free coordinates as a plane, the worst over the others."""
     names = robot.pose_names
-    free = [n for n in names if region.intervals[n][0] < region.intervals[n][1]]
-    plane, rest = free[:2], free[2:]
+    plane, rest = (free := _free(region, names))[:2], free[2:]
     each = max(3, round(_OTHERS ** (1 / max(1, len(rest)))))
     axes = {n: np.linspace(*region.intervals[n], size if n in plane else each) for n in free}
-    others = np.stack(np.meshgrid(*(axes[n] for n in rest), indexing="ij"), axis=-1).reshape(-1, len(rest))
+    others = np.array(list(product(*(axes[n] for n in rest)))).reshape(-1, len(rest))
     first, second = axes[plane[0]], axes[plane[1]]
     poses = np.empty((size, size, len(others), len(names)))
     for k, name in enumerate(names):
@@ -77,23 +87,29 @@ def section_of(problem: Problem, robot: Mechanism, region: Region, margin: str, 
 def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
     """Each robot in 3-D at its home pose, in the same scale, with the workspace's edge."""
     with mpl.rc_context(_STYLE):
-        figure = Figure(figsize=(5.2 * len(robots), 4.8), layout="constrained")
-        for k, (label, robot) in enumerate(robots.items(), start=1):
+        figure = Figure(figsize=(5.6 * len(robots), 4.2))
+        drawn = {label: robot.polylines(np.array(robot.home)) for label, robot in robots.items()}
+        box = _common_box([line for lines in drawn.values() for line in lines.values()] + region.outline())
+        for k, (label, lines) in enumerate(drawn.items(), start=1):
             axes = figure.add_subplot(1, len(robots), k, projection="3d")
-            lines = robot.polylines(np.array(robot.home))
             for name, line in lines.items():
                 kind = name.split()[0]
-                colour = {"base": "#888888", "arm": _COLOURS[0], "rods": "#444444", "tool": _COLOURS[2]}.get(
-                    kind, _COLOURS[1]
-                )
-                width = {"arm": 3.5, "platform": 3.0, "tool": 2.0}.get(kind, 1.1)
+                colour, width = _LINES.get(kind, ("#444444", 1.1))
                 axes.plot(*line.T, color=colour, linewidth=width)
             for edge in region.outline():
                 axes.plot(*edge.T, color="#3c7a3f", linewidth=0.8, alpha=0.7)
             axes.set(title=label, xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
+            axes.set(xlim=box[0], ylim=box[1], zlim=box[2])
             axes.set_aspect("equal")
+            axes.set_box_aspect(None, zoom=1.1)
             axes.view_init(elev=18, azim=-60)
         return _png(figure)
+
+
+def _common_box(lines: list[Array]) -> list[tuple[float, float]]:
+    """Limits of x, y and z that hold every line."""
+    points = np.concatenate(lines)
+    return list(zip(points.min(axis=0).tolist(), points.max(axis=0).tolist(), strict=True))
 
 
 def map_picture(sections: dict[str, Section], title: str, bound: float | None) -> bytes:
@@ -152,12 +168,14 @@ def motion_picture(time: Array, rows: Sequence[tuple[str, Array, Array | None]],
         panels: list[Axes] = list(np.atleast_1d(figure.subplots(len(rows), 1, sharex=True)))
         for axes, (label, values, limits) in zip(panels, rows, strict=True):
             for k, name in enumerate(joints):
-                axes.plot(1e3 * time, values[:, k], color=_COLOURS[k % len(_COLOURS)], label=name, linewidth=1.1)
+                axes.plot(1e3 * time, values[:, k], _DASHES[k % 2], color=_COLOURS[k % 6], label=name, linewidth=1.2)
             for limit in () if limits is None else np.unique(np.abs(limits)):
                 for sign in (-1, 1):
                     axes.axhline(sign * limit, color="#b00020", linestyle="--", linewidth=0.9)
             axes.set_ylabel(label)
-        panels[0].legend(frameon=False, ncols=len(joints), loc="upper right")
+        figure.legend(
+            *panels[0].get_legend_handles_labels(), loc="outside upper right", ncols=len(joints), frameon=False
+        )
         panels[-1].set_xlabel("time [ms]")
         return _png(figure)
 

@@ -11,6 +11,7 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from studies import plots
+from studies.check import shown_pose
 from studies.pipeline import Outcome, Timing
 from trajectory.motion import motion_along
 
@@ -18,7 +19,7 @@ Pictures = list[tuple[str, bytes]]  # title and PNG
 _MAPPED = ("fvi", "internal_determinant")
 _TITLES = {
     "fvi": "FVI, worst over the other coordinates",
-    "internal_determinant": "|(59)| over d^4 l^4, worst over the other coordinates",
+    "internal_determinant": "Internal determinant (Heli4: |(59)| over d^4 l^4), worst over the other coordinates",
 }
 
 
@@ -45,6 +46,9 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
         margins=_margin_rows(outcome),
         sampled=next(iter(outcome.worst.values())).sampled,
         synthesis=outcome.synthesis,
+        active=outcome.active,
+        on_cycle=outcome.on_cycle,
+        pose_names=", ".join(outcome.robot.pose_names),
         pictures=[(title, _embedded(png)) for title, png in pictures],
         timings=_timing_rows(outcome),
         peaks=_peak_rows(outcome.timing) if outcome.timing else [],
@@ -72,9 +76,7 @@ def _margin_rows(outcome: Outcome) -> list[tuple[str, str, str, str, str]]:
             wanted.get(margin, ""),
             f"{outcome.prototype[margin].value:.6f}" if outcome.prototype else "",
             f"{worst.value:.6f}",
-            ", ".join(
-                f"{n} {round(v, 6) + 0.0:.4g}" for n, v in zip(outcome.robot.pose_names, worst.pose, strict=True)
-            ),
+            shown_pose(worst.pose),
         )
         for margin, worst in outcome.worst.items()
     ]
@@ -113,7 +115,8 @@ def pictures_of(outcome: Outcome) -> Pictures:
         robots = {"prototype": outcome.problem.robot, **robots}
     pictures = [("Mechanism at home, with the workspace's edge", plots.mechanism_picture(robots, outcome.region))]
     bounds = {r.margin: r.at_least for r in outcome.problem.requirements} | {outcome.problem.objective: 1.0}
-    for margin in (m for m in _MAPPED if m in outcome.robot.margins):
+    mapped = _MAPPED if plots.can_be_mapped(outcome.region, outcome.robot.pose_names) else ()
+    for margin in (m for m in mapped if m in outcome.robot.margins):
         sections = {
             label: plots.section_of(outcome.problem, robot, outcome.region, margin) for label, robot in robots.items()
         }

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
 from design import Bounds, Box, Cylinder, Region, Requirement, SumLimit
 from design.nlp import Problem
 from kinematics import FviBounds, Mechanism
 from studies import schema
+from studies.errors import StudyError
 from studies.mechanisms import mechanism_class
 from studies.schema import CylinderRegion, Study
+from studies.toml_file import read_toml
 from trajectory import AdeptCycle, Limits
 
 OBJECTIVE = "fvi"
@@ -61,6 +68,35 @@ def cycle_of(cycle: schema.Cycle) -> AdeptCycle:
     return AdeptCycle(cycle.lift, cycle.span, cycle.blend, cycle.turn, cycle.pick, cycle.heading)
 
 
-def limits_of(limits: schema.Limits | schema.Approach) -> Limits:
-    """The limits of the cycle or of the approach."""
+def require_cycle_inside(study: Study, file: Path) -> None:
+    """Check that the cycle stays where the geometry is verified.
+
+    Raises:
+        StudyError: it leaves the region, with the pose at which it does.
+    """
+    if study.trajectory is None:
+        return
+    path = cycle_of(study.trajectory.cycle)
+    (poses,) = path.evaluate(np.linspace(0.0, path.length, 501), 0)
+    names = mechanism_class(study.mechanism).pose_names
+    inside = region_of(study).contains(poses, names, slack=1e-9)
+    if not inside.all():
+        pose = ", ".join(f"{v:.4g}" for v in poses[int(np.argmin(inside))])
+        expected = f"a cycle inside the region, {region_of(study)}"
+        problem = read_toml(file).problem(("trajectory", "cycle"), f"the pose ({pose}) on it", expected)
+        raise StudyError([problem])
+
+
+def limits_of(limits: schema.Limits) -> Limits:
+    """The limits of the cycle."""
     return Limits(**limits.model_dump())
+
+
+def approach_limits(asked: schema.Approach, drives: Limits, joints: int) -> Limits:
+    """The approach's own limits, nowhere above the drives', and the drives' torque."""
+    own = Limits(asked.speed, asked.acceleration, jerk=asked.jerk)
+    merged: dict[str, Any] = {"torque": drives.torque}
+    for name in ("speed", "acceleration", "jerk"):
+        given = [limit for limits in (own, drives) if (limit := limits.of_joints(name, joints)) is not None]
+        merged[name] = tuple(np.min(given, axis=0).tolist())
+    return Limits(**merged)

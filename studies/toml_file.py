@@ -76,7 +76,7 @@ def _read_text(path: Path) -> str:
         reason = getattr(error, "strerror", None) or str(error)
         raise StudyError([Problem(path, "", None, reason.lower(), "a readable TOML file")]) from None
     try:
-        return raw.decode("utf-8")
+        return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
         raise StudyError([Problem(path, "", line, f"byte 0x{raw[error.start]:02x}", "UTF-8 text")]) from None

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from trajectory.adept import AdeptCycle
 from trajectory.cycle import Cycle, Piece, there_and_back
 from trajectory.errors import LimitsExceeded, RoughPath, SetpointFileError, TimingFailed
-from trajectory.files import CannotWrite, write_files
+from trajectory.files import CannotWrite, require_writable, write_files
 from trajectory.limits import Limits
 from trajectory.motion import Motion, PoseMotion, motion_along, pose_motion
 from trajectory.path import Path, Reversed, require_smooth
@@ -66,6 +66,7 @@ __all__ = [
     "read_setpoints",
     "repair",
     "require_smooth",
+    "require_writable",
     "there_and_back",
     "time_optimal",
     "verify",

@@ -57,6 +57,9 @@ class AdeptCycle:
         for field in fields(self):
             if not np.all(np.isfinite(getattr(self, field.name))):
                 raise InvalidValue(f"AdeptCycle {field.name}", getattr(self, field.name), "finite")
+        for name in ("lift", "span"):
+            if getattr(self, name) <= 0:
+                raise InvalidValue(f"AdeptCycle {name}", getattr(self, name), "a length > 0 m")
         if self.blend <= 0:
             raise InvalidValue("AdeptCycle blend", self.blend, "a length > 0 m")
         if self.blend > self.lift:

@@ -20,7 +20,7 @@ from kinematics.motion import actuator_motion
 from trajectory.errors import LimitsExceeded, TimingFailed
 from trajectory.limits import Limits
 from trajectory.path import Array
-from trajectory.setpoints import Setpoints
+from trajectory.setpoints import Setpoints, robot_header
 
 PARTS = 10  # of each period, at which the limits and the forward model are checked
 _ROUNDING = 1e-9  # of a limit: ruckig's profiles touch the limits
@@ -77,7 +77,7 @@ def plan_approach(
     count = max(1, round(plan.duration / period))  # a period at rest where the target is the start
     if plan.duration > 0.0 and abs(count * period - plan.duration) > _ROUNDING * period:
         raise TimingFailed("ruckig", asked, f"{plan.duration} s is no whole number of periods")
-    times = np.arange(count * PARTS + 1) * (period / PARTS)
+    times = np.round(np.arange(count * PARTS + 1) * (period / PARTS), 12)
     dense = _samples(plan, np.minimum(times, plan.duration))
     pose = _poses(robot, dense[0], times, asked)
     torque = _torque(robot, payload, pose, dense)
@@ -86,9 +86,8 @@ def plan_approach(
     if over:
         raise LimitsExceeded(over, 1.0)
     table = np.concatenate([times[:, None], pose, *dense, torque], axis=1)[::PARTS]
-    header: dict[str, object] = {"mechanism": type(robot).__name__, "geometry hash": robot.geometry.digest}
-    header |= {"law": "ruckig", "payload [kg]": payload, "period [s]": float(period), "periods": [count]}
-    header |= {f"limit {name}": value for name, value in limits.as_dict().items()}
+    header = robot_header(robot, limits) | {"laws": ["ruckig"], "payload [kg]": payload}
+    header |= {"start": ends[0].tolist(), "target": ends[1].tolist(), "period [s]": float(period), "periods": [count]}
     setpoints = Setpoints.of_table(table, robot.actuator_names, joint_units, header)
     return Approach(setpoints, count * period, found)
 

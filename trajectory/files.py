@@ -18,6 +18,20 @@ class CannotWrite(LinkwrightError):
         super().__init__(f"{path}: cannot write: {reason}")
 
 
+def require_writable(folder: Path) -> None:
+    """Make the folder and try it, before hours of work go into what it should hold.
+
+    Raises:
+        CannotWrite: with the path and the system's reason.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise CannotWrite(folder, error.strerror or str(error)) from error
+
+
 def write_files(folder: Path, files: Mapping[str, str | bytes]) -> list[Path]:
     """Write all files into a folder; each replaces its predecessor at once, and none is touched if one cannot be made.
 

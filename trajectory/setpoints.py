@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from importlib.metadata import version
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,14 @@ import numpy as np
 from kinematics import InvalidShape, InvalidValue, Mechanism
 from kinematics.drives import from_actuators
 from trajectory.cycle import Cycle, Piece, periods_of
+from trajectory.limits import Limits
 from trajectory.motion import Motion, motion_along
 from trajectory.path import POSE_NAMES, Array
 
+CONVENTIONS = (
+    "one row a period; the last row of a cycle is the first of the next one",
+    "where the law has no jerk limit, acceleration and torque step between rows, from and to rest too",
+)
 ASSUMPTIONS = (
     "the default inertia and the reference limits are an assumed drive set, not a manufacturer's datasheet",
     "rigid bodies without friction; the mass of each rod is split between its two ends",
@@ -122,7 +128,7 @@ def cycle_setpoints(cycle: Cycle, period: float, joint_units: Sequence[str]) -> 
     for piece, count in zip(whole.pieces, counts, strict=True):
         motion = _sampled(whole, piece, count, last=piece is whole.pieces[-1])
         parts.append(np.concatenate([motion.tool.pose, *motion.joints[:3], motion.torque], axis=1))
-    time = np.arange(sum(counts) + 1) * period
+    time = np.round(np.arange(sum(counts) + 1) * period, 12)
     table = np.concatenate([time[:, None], np.concatenate(parts)], axis=1)
     return Setpoints.of_table(table, cycle.robot.actuator_names, joint_units, _header(cycle, whole, period, counts))
 
@@ -133,14 +139,23 @@ def _sampled(cycle: Cycle, piece: Piece, count: int, last: bool) -> Motion:
     return motion_along(cycle.robot, piece.path, piece.timed.law.at(times), piece.payload)
 
 
-def _header(before: Cycle, after: Cycle, period: float, counts: Sequence[int]) -> dict[str, Any]:
-    """Plain data, with lists and no tuples, so that it reads back equal."""
-    robot = before.robot
+def robot_header(robot: Mechanism, limits: Limits) -> dict[str, Any]:
+    """What every set-point file says of its robot; plain data, lists and no tuples, so that it reads back equal."""
     header: dict[str, Any] = {
         "units of this header": "SI and radians unless a name says so",
+        "made by": f"linkwright {version('linkwright')}",
         "mechanism": type(robot).__name__,
+        "coordinates": (type(robot).__doc__ or "").splitlines()[0],
+        "geometry": robot.geometry.as_dict(),
         "geometry hash": robot.geometry.digest,
         "inertia": str(robot.inertia),
+    }
+    header |= {f"limit {name}": value for name, value in limits.as_dict().items()}
+    return header | {"conventions": list(CONVENTIONS), "assumptions": list(ASSUMPTIONS)}
+
+
+def _header(before: Cycle, after: Cycle, period: float, counts: Sequence[int]) -> dict[str, Any]:
+    header = robot_header(before.robot, before.limits) | {
         "laws": [piece.timed.law.name for piece in before.pieces],
         "period [s]": float(period),
         "periods": list(counts),
@@ -148,11 +163,9 @@ def _header(before: Cycle, after: Cycle, period: float, counts: Sequence[int]) -
         "cycle time after stretching [s]": after.duration,
         "payloads [kg]": [float(piece.payload) for piece in before.pieces],
     }
-    header |= {f"limit {name}": value for name, value in before.limits.as_dict().items()}
     header |= {f"path {name}": value for name, value in before.pieces[0].path.as_dict().items()}
     for k, piece in enumerate(after.pieces):
         found = piece.timed.verification
-        header[f"peak over limit, piece {k + 1}"] = dict(found.peak_over_limit)
-        header[f"rms torque, piece {k + 1}"] = found.rms_torque.tolist()
-    header["assumptions"] = list(ASSUMPTIONS)
+        header[f"peak over limit, piece {k + 1}, after stretching"] = dict(found.peak_over_limit)
+        header[f"rms torque, piece {k + 1}, after stretching"] = found.rms_torque.tolist()
     return header

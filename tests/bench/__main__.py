@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import platform
 import subprocess
 import sys
@@ -18,6 +19,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         tables = {"bench": _bench_table(_benchmarks(Path(folder) / "bench.json"))}
         tables["run"] = _run_table(_study(Path(folder)))
+        (ROOT / "docs").mkdir(exist_ok=True)
         (ROOT / "docs" / "heli4.png").write_bytes((Path(folder) / "mechanism.png").read_bytes())
     readme = ROOT / "README.md"
     text = readme.read_text()
@@ -65,14 +67,17 @@ def _bench_table(benchmarks: list[dict[str, Any]]) -> str:
     median = {b["name"]: b["stats"]["median"] for b in benchmarks}
     extra = {b["name"]: b["extra_info"] for b in benchmarks}
     count = extra["test_poses[inverse-numpy]"]["poses"]
-    lines = [f"Medians of one run on {platform.machine()}, two cores.", ""]
+    lines = [
+        f"Medians of one run on {platform.machine()} with {os.cpu_count()} cores; Linkwright uses all, numpy one.",
+        "",
+    ]
     lines += [f"| Heli4, {count:,} poses | Linkwright | batched numpy | ratio |", "| --- | --- | --- | --- |"]
     for what in ("inverse", "forward", "fvi"):
         ours, peer = median[f"test_poses[{what}-linkwright]"], median[f"test_poses[{what}-numpy]"]
         lines.append(f"| {what} | {1e3 * ours:.1f} ms | {1e3 * peer:.1f} ms | {peer / ours:.1f} |")
-    rounds = extra["test_whole_synthesis"]["rounds"]
     lines += ["", "| job | time |", "| --- | --- |"]
-    lines.append(f"| one max-min NLP (81 poses) | {median['test_one_nlp']:.2f} s |")
+    poses, rounds = extra["test_one_nlp"]["poses"], extra["test_whole_synthesis"]["rounds"]
+    lines.append(f"| one max-min NLP over {poses} poses | {median['test_one_nlp']:.2f} s |")
     lines.append(
         f"| whole synthesis ({rounds} rounds, a dense search in each) | {median['test_whole_synthesis']:.1f} s |"
     )
@@ -85,17 +90,28 @@ def _bench_table(benchmarks: list[dict[str, Any]]) -> str:
 
 def _run_table(run: dict[str, Any]) -> str:
     """The study's answer as Markdown."""
-    lines = ["| worst over the cylinder of 1 m diameter, a full turn | prototype | optimum |", "| --- | --- | --- |"]
+    lines = [f"| worst over `{run['region']}` | prototype | optimum |", "| --- | --- | --- |"]
     lines += [
         f"| {name} | {run['prototype'][name]:.4f} | {worst['value']:.4f} |" for name, worst in run["worst"].items()
     ]
-    cycle = run["cycle"]
-    peaks = ", ".join(f"{name} {value:.4f}" for name, value in cycle["peak_over_limit"].items())
     lines += ["", f"Held back by: {'; '.join(run['active'])}.", ""]
-    lines.append(
-        f"Half of the Adept cycle (25 / 305 / 25 mm, half turn, 1 kg): {cycle['half_cycle']:.4f} s; there and back on "
-        f"a 1 ms bus {cycle['cycle_on_the_bus']:.3f} s; peak over limit, between gridpoints too: {peaks}."
+    header, cycle, before = run["cycle_header"], run["cycle"], run["prototype_cycle"]
+    path = ", ".join(
+        f"{key[5:]} {value:.4g}" for key, value in header.items() if isinstance(value, float) and "path" in key
     )
+    limits = ", ".join(f"{key[6:]} {value:g}" for key, value in header.items() if key.startswith("limit "))
+    peaks = ", ".join(f"{name} {value:.4f}" for name, value in cycle["peak_over_limit"].items())
+    lines += [
+        f"| cycle: {path}; payload {header['payloads [kg]'][0]:g} kg | prototype | optimum |",
+        "| --- | --- | --- |",
+    ]
+    names = {
+        "half_cycle": "half cycle [s]",
+        "cycle_on_the_bus": f"there and back, {1e3 * header['period [s]']:g} ms bus [s]",
+    }
+    names["worst_rms_over_peak_torque"] = "worst RMS over peak torque"
+    lines += [f"| {words} | {before[name]:.4f} | {cycle[name]:.4f} |" for name, words in names.items()]
+    lines += ["", f"Limits (SI): {limits}; peak over limit of the optimum, between gridpoints too: {peaks}."]
     return "\n".join(lines) + "\n"
 
 

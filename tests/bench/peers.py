@@ -37,7 +37,7 @@ def inverse(g: Heli4.Geometry, pose: Array) -> Array:
 
 
 def fvi(g: Heli4.Geometry, pose: Array, speed: float, effort: float, v: float, f: float, length: float) -> Array:
-    """(k,) by the pseudo-inverse of the homogeneous inverse Jacobian."""
+    """(k,) by the batched inverse of the homogeneous inverse Jacobian."""
     q = inverse(g, pose)
     base, radial = actuators(g)
     along = np.sin(q)[..., None] * radial + np.cos(q)[..., None] * np.array([0, 0, 1.0])
@@ -47,7 +47,7 @@ def fvi(g: Heli4.Geometry, pose: Array, speed: float, effort: float, v: float, f
     j_m = j_x / (g.arm_length * (rods * tangent).sum(axis=-1))[..., None]
     j_m[..., 3] /= length
     velocity = 1 / np.linalg.norm(j_m, axis=-1).max(axis=-1)
-    force = 1 / np.linalg.norm(np.linalg.pinv(j_m), axis=-2).max(axis=-1)
+    force = 1 / np.linalg.norm(np.linalg.inv(j_m), axis=-2).max(axis=-1)
     return np.minimum(velocity * speed / v, force * effort / f)
 
 

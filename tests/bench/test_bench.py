@@ -58,7 +58,8 @@ def test_poses(benchmark: Any, what: str, who: str) -> None:
 
 
 def test_one_nlp(benchmark: Any) -> None:
-    poses = REGION.grid(ROBOT.pose_names, (3, 3, 3, 3))
+    poses = REGION.spread(ROBOT.pose_names)
+    benchmark.extra_info["poses"] = len(poses)
     start = ROBOT.geometry.vector()[PROBLEM.places()]
     solution = benchmark.pedantic(lambda: solve(PROBLEM, poses, start), rounds=3, warmup_rounds=1)
     assert solution.converged

@@ -60,6 +60,9 @@ def test_the_coordinates_may_come_in_any_order() -> None:
         (lambda: Cylinder(radius=1.0, x=(0, 1)), "x"),
         (lambda: Box(z=(1.0, 0.0)), "z"),
         (lambda: Box(z=(0.0, math.inf)), "z"),
+        (lambda: Box(z=(0.0, 1.0, 2.0)), "z"),
+        (lambda: Box(z="a"), "z"),
+        (lambda: Cylinder(radius="a"), "radius"),
     ],
 )
 def test_an_impossible_region_is_refused_by_its_key(build: object, key: str) -> None:
@@ -79,3 +82,15 @@ def test_the_outline_of_a_cylinder_lies_on_its_wall() -> None:
     for ring in CYLINDER.outline():
         np.testing.assert_allclose(np.hypot(ring[:, 0], ring[:, 1]), 0.5)
     assert len(BOX.outline()) == 12
+
+
+def test_numpy_numbers_are_numbers() -> None:
+    assert Box(z=np.float32(0.5), theta=np.int64(0)).intervals == {"z": (0.5, 0.5), "theta": (0.0, 0.0)}
+
+
+def test_the_spread_of_a_cylinder_reaches_all_sides_without_repeating_itself() -> None:
+    spread = CYLINDER.spread(NAMES)
+    for column, (low, high) in enumerate(CYLINDER.intervals.values()):
+        assert spread[:, column].min() == pytest.approx(low)
+        assert spread[:, column].max() == pytest.approx(high)
+    assert len(np.unique(np.round(spread, 9), axis=0)) == len(spread)

@@ -47,3 +47,16 @@ def test_worst_poses_are_inside_and_in_rising_order() -> None:
     found = worst_poses(ROBOT, REGION, "fvi", about=50_000)
     assert REGION.contains(found.poses, ROBOT.pose_names).all()
     assert (np.diff(found.values) >= 0).all()
+
+
+def test_a_region_of_one_pose_is_that_pose() -> None:
+    point = Box(x=0.1, y=0.0, z=-0.7, theta=0.3)
+    found = worst_poses(ROBOT, point, "fvi")
+    assert found.value == float(ROBOT.fvi(np.array([0.1, 0.0, -0.7, 0.3])))
+
+
+def test_local_minima_that_differ_in_y_alone_are_kept_and_near_ones_are_not() -> None:
+    found = worst_poses(ROBOT, REGION, "J_q", about=50_000)
+    apart = np.abs(found.poses[:, None] - found.poses[None]) / REGION.extent(ROBOT.pose_names)
+    apart = apart.max(axis=-1) + np.eye(len(found.poses))
+    assert apart.min() > 0.01

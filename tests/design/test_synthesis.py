@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from design import Bounds, Cylinder, Requirement, SumLimit, SynthesisFailed, worst_poses
-from design.nlp import Problem, solve
+from design.nlp import Problem, active_sets, solve
 from design.synthesis import synthesise
 from kinematics import Heli4
 
@@ -68,17 +68,14 @@ def test_requirements_hold_between_the_poses_that_were_solved_on() -> None:
 
 
 def test_what_holds_the_optimum_back_is_named() -> None:
-    found = synthesise(
-        problem(("platform_radius", 0.03, 0.08), requirements=(Requirement("internal_determinant", 0.4),)),
-        REGION,
-        starts=1,
-        about=ABOUT,
-    )
+    asked = problem(("platform_radius", 0.03, 0.08), requirements=(Requirement("internal_determinant", 0.4),))
+    found = synthesise(asked, REGION, starts=1, about=ABOUT)
     at_bound = abs(found.robot.geometry.platform_radius - 0.08) < 1e-6
     at_requirement = found.after["internal_determinant"].value < 0.401
-    assert ("platform_radius at its upper bound 0.08" in found.active) == at_bound
-    assert ("internal_determinant at its lower bound 0.4" in found.active) == at_requirement
-    assert found.active
+    active = active_sets(asked, found.robot, {margin: worst.value for margin, worst in found.after.items()})
+    assert ("platform_radius at its upper bound 0.08" in active) == at_bound
+    assert ("internal_determinant at its lower bound 0.4" in active) == at_requirement
+    assert active
 
 
 def test_the_azimuths_can_be_variables() -> None:
@@ -123,7 +120,30 @@ def test_the_characteristic_length_stays_the_prototypes_while_the_pitch_varies()
     """Else a longer pitch would count as a better robot without moving the tool any faster."""
     asked = problem(("pitch", 0.02, 0.12))
     assert asked.characteristic_length == pytest.approx(0.05 / (2 * math.pi))
-    solution = solve(asked, REGION.corners(ROBOT.pose_names), np.array([0.05]))
+    solution = solve(asked, REGION.spread(ROBOT.pose_names), np.array([0.05]))
     robot = Heli4(replace(ROBOT.geometry, pitch=float(solution.values[0])))
-    own = robot.fvi(REGION.corners(ROBOT.pose_names), characteristic_length=asked.characteristic_length).min()
+    own = robot.fvi(REGION.spread(ROBOT.pose_names), characteristic_length=asked.characteristic_length).min()
     assert solution.objective == pytest.approx(own, rel=1e-6)
+
+
+def test_a_region_that_no_geometry_reaches_is_told_with_limb_and_margin() -> None:
+    below = Cylinder(radius=0.5, z=(-2.0, -1.9), theta=0.0)
+    with pytest.raises(SynthesisFailed, match=r"none of 200 geometries.*limb \d.*reach margin is -"):
+        synthesise(problem(("arm_length", 0.25, 0.5)), below, starts=1, about=ABOUT)
+
+
+def test_a_prototype_that_cannot_reach_is_replaced_by_a_random_start() -> None:
+    short = replace(problem(("rod_length", 0.6, 1.0)), robot=Heli4(replace(ROBOT.geometry, rod_length=0.61)))
+    assert short.robot.margin("reach", REGION.spread(ROBOT.pose_names)).min() < 0
+    found = synthesise(short, REGION, starts=1, about=ABOUT)
+    assert found.after["fvi"].value > 0.9
+
+
+def test_a_sum_over_tuples_holds_in_every_entry() -> None:
+    from kinematics import Peppermill
+
+    mill = Peppermill()
+    limit = SumLimit(("proximal_lengths", "half_distance"), 0.72)
+    asked = replace(problem(), robot=mill, sums=(limit,))
+    sums = [mill.geometry.vector()[places].sum() for places in asked.summed(limit)]
+    assert sums == pytest.approx([r + mill.geometry.half_distance for r in mill.geometry.proximal_lengths])

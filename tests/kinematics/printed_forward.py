@@ -54,10 +54,11 @@ def eliminated(first: SimpleNamespace, second: SimpleNamespace, slips=()) -> tup
         c1 * b2 - c2 * b1, c1 * e2 - c2 * e1, c1 * f2 - c2 * f1, b1 * d2 - b2 * d1, d1 * e2 - d2 * e1,
         d1 * f2 - d2 * f1,
     ]  # fmt: skip
-    five, factor = (v[3], 2) if "29" in slips else (v[5], 1)
+    in_u4 = v[3] if "29 u4" in slips else v[5]
+    in_u3 = 2 * v[3] if "29 u3" in slips else v[5]
     return [
-        v[0] * five - v[1] ** 2,
-        v[0] * (v[6] - v[8]) + factor * v[2] * five - 2 * v[1] * v[3],
+        v[0] * in_u4 - v[1] ** 2,
+        v[0] * (v[6] - v[8]) + v[2] * in_u3 - 2 * v[1] * v[3],
         v[0] * (v[7] + v[9]) + v[2] * (v[6] - v[8]) - v[3] ** 2 - 2 * v[1] * v[4],
         v[0] * v[10] + v[2] * (v[7] + v[9]) - 2 * v[3] * v[4],
         v[2] * v[10] - v[4] ** 2,

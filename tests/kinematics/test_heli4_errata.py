@@ -133,11 +133,17 @@ def test_26_is_a_quartic_in_y(geometry):
     assert quartic_at(x, geometry) > 1e-3
 
 
-def test_29_takes_v3_where_v5_belongs():
-    assert quartic_at(POSE[1], OBLIQUE, {"29"}) > 1e-3
+@pytest.mark.parametrize(("geometry", "slip"), [(TABLE_1, "29 u3"), (OBLIQUE, "29 u3"), (OBLIQUE, "29 u4")])
+def test_29_takes_v3_where_v5_belongs(geometry, slip):
+    assert quartic_at(POSE[1], geometry) < 1e-11
+    assert quartic_at(POSE[1], geometry, {slip}) > 1e-4
+
+
+def test_29_is_hidden_by_table_1_in_u4():
     first, second = conics(ByHand(TABLE_1), joints_at(TABLE_1))
     v = eliminated(first, second)[1]
-    assert abs(v[0]) < 1e-12 * abs(v[1])  # so Table 1 hides the slip in u_4
+    assert abs(v[0]) < 1e-12 * abs(v[1])
+    assert quartic_at(POSE[1], TABLE_1, {"29 u4"}) < 1e-11
 
 
 @pytest.mark.parametrize("geometry", [TABLE_1, OBLIQUE], ids=["table 1", "oblique"])

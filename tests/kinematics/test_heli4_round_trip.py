@@ -51,10 +51,10 @@ def test_many_turns_of_a_long_screw():
 
 def test_random_geometries():
     rng = np.random.default_rng(6)
-    for _ in range(220):
+    for _ in range(1000):
         geometry = random_geometry(rng)
         robot = Heli4(geometry)
-        poses = cylinder(200, seed=7, radius=0.2, z=(-0.75, -0.65))
+        poses = cylinder(40, seed=7, radius=0.2, z=(-0.75, -0.65))
         poses = poses[~np.isnan(robot.inverse(poses)).any(axis=-1)]
-        assert len(poses) > 100, geometry
+        assert len(poses) > 20, geometry
         assert_round_trip(robot, poses)

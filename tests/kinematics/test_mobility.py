@@ -95,6 +95,44 @@ def test_a_planar_four_bar_moves_though_its_count_says_it_should_not():
     assert graph.mobility()[:2] == (1, 3)
 
 
+def platform_twists(joints: list[Joint]) -> tuple[np.ndarray, np.ndarray]:
+    """(k, 3) rotations and (k, 3) velocities at the origin of the part `platform`, over all motions."""
+    graph = JointGraph(tuple(joints))
+    twists = graph.motions()[:, graph.parts.index("platform")]
+    return twists[:, :3], twists[:, 3:]
+
+
+def schoenflies_chain(name: str, axis: np.ndarray, place: np.ndarray) -> list[Joint]:
+    """Three slides and a turn about `axis`, from the base to the platform."""
+    parts = ["base", f"{name} 1", f"{name} 2", f"{name} 3", "platform"]
+    slides = [Joint("P", *parts[i : i + 2], place, (e,)) for i, e in enumerate((X, Y, Z))]
+    return [*slides, Joint("R", *parts[3:], place, (axis,))]
+
+
+def test_36_two_schoenflies_chains_about_different_axes_leave_translations_only():
+    rng = np.random.default_rng(3)
+    places = rng.normal(size=(2, 3))
+    for other, turns in ((X, 0), (np.array([0.6, 0.0, 0.8]), 0), (Z, 1)):
+        joints = schoenflies_chain("one", Z, places[0]) + schoenflies_chain("two", other, places[1])
+        omega, velocity = platform_twists(joints)
+        assert np.linalg.matrix_rank(np.hstack([omega, velocity]), tol=1e-9) == 3 + turns
+        assert np.linalg.matrix_rank(omega, tol=1e-9) == turns
+        assert np.linalg.matrix_rank(velocity, tol=1e-9) == 3
+
+
+def test_a_limb_of_two_rods_leaves_three_translations_and_two_rotations():
+    """It holds only the rotation about d x l: what makes (36) the wrong tool for Heli4."""
+    d, rod, arm = 0.1 * Y, np.array([0.2, 0.1, -0.7]), np.array([0.3, 0.0, 0.1])
+    joints = [Joint("R", "base", "arm", np.zeros(3), (Y,))]
+    for side, name in ((-0.5, "rod 1"), (0.5, "rod 2")):
+        joints.append(Joint("S", "arm", name, arm + side * d))
+        joints.append(Joint("S", name, "platform", arm + rod + side * d))
+    omega, velocity = platform_twists(joints)
+    assert np.linalg.matrix_rank(np.hstack([omega, velocity]), tol=1e-9) == 5
+    assert np.linalg.matrix_rank(omega, tol=1e-9) == 2
+    assert np.abs(omega @ np.cross(d, rod)).max() < 1e-12
+
+
 @pytest.mark.parametrize(
     ("kind", "axes", "freedoms"),
     [("fixed", (), 0), ("R", (Z,), 1), ("P", (Z,), 1), ("H", (Z,), 1), ("C", (Z,), 2), ("U", (X, Y), 2), ("S", (), 3)],

@@ -86,7 +86,7 @@ def test_its_set_points_are_written_and_read(tmp_path_factory: pytest.TempPathFa
     write(file, approach.setpoints)
     back = read_setpoints(file)
     assert np.array_equal(back.table(), approach.setpoints.table())
-    assert back.header["law"] == "ruckig"
+    assert back.header["laws"] == ["ruckig"]
 
 
 def test_a_torque_beyond_its_limit_is_refused(robot: Heli4, target: np.ndarray) -> None:

@@ -1,0 +1,109 @@
+"""What a mechanism writes: its data, its closure and its closed forms. `Mechanism` derives the rest.
+
+A new mechanism is one file with these hooks, and its name in `MECHANISMS`; docs/new_mechanism.md walks through them.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from types import SimpleNamespace
+from typing import ClassVar
+
+import casadi as ca
+import numpy as np
+
+from kinematics.bodies import Bodies
+from kinematics.geometry import GeometryRecord
+from kinematics.indices import FviBounds
+
+Array = np.ndarray
+
+
+class Definition(ABC):
+    """The hooks of a mechanism; `g` holds the geometry's fields by name, as numbers or symbols."""
+
+    Geometry: ClassVar[type[GeometryRecord]]
+    Inertia: ClassVar[type]  # a frozen dataclass of masses, with defaults
+    pose_names: ClassVar[tuple[str, ...]]
+    joint_names: ClassVar[tuple[str, ...]]
+    joint_units: ClassVar[tuple[str, ...]]  # rad or m
+    rotations: ClassVar[tuple[int, ...]]  # which pose coordinates are angles
+    counts_turns: ClassVar[bool] = False  # whether an angle a turn on is another pose, as on a screw
+    home: ClassVar[tuple[float, ...]]  # a pose well inside the workspace
+    fvi_bounds: ClassVar[FviBounds]
+    margins: ClassVar[tuple[str, ...]] = ("reach", "fvi", "J_q", "det_J_q", "det_J_x")
+
+    @staticmethod
+    @abstractmethod
+    def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(m,) loop closure, one row a limb."""
+
+    @staticmethod
+    @abstractmethod
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(m,) joints of the working mode, NaN where a limb cannot reach."""
+
+    @staticmethod
+    @abstractmethod
+    def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """How far each limb is from not reaching [m], one row a limb; negative where it cannot."""
+
+    @staticmethod
+    @abstractmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """What J_q's diagonal (m,) and det J_x are divided by, so that both lie in [-1, 1].
+
+        With m > n it is sqrt(det J_x^T J_x) that takes the determinant's place.
+        """
+
+    @abstractmethod
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+        """The masses that the joints and the pose move; `payload` [kg] sits at the tool."""
+
+    @staticmethod
+    @abstractmethod
+    def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
+        """Named polylines (3, k) that draw the mechanism: base, arms, rods, platform."""
+
+    @classmethod
+    def drives(cls, g: SimpleNamespace) -> ca.SX:  # noqa: ARG003
+        """(m, m) constant C with actuators = C joints; the identity unless the drives couple joints."""
+        return ca.SX.eye(len(cls.joint_names))
+
+    @staticmethod
+    def joint_cosines_and_sines(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX] | None:  # noqa: ARG004
+        """(m,) cosines and (m,) sines of the joints at a pose, where the joints are revolute."""
+        return None
+
+    @staticmethod
+    def pose_rate_map(pose: ca.SX) -> ca.SX:
+        """(n, n) pose rates from the twist; the identity unless the pose holds Euler angles."""
+        return ca.SX.eye(pose.shape[0])
+
+    @classmethod
+    def closure_by_twist(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(m, n) derivative of the closure by the twist; to be replaced where Euler angles would spoil it."""
+        return ca.jacobian(cls.closure(pose, joints, g), pose) @ cls.pose_rate_map(pose)
+
+    @property
+    def actuator_names(self) -> tuple[str, ...]:
+        """What C joints is called; the joints themselves unless the drives couple them."""
+        return self.joint_names
+
+    @property
+    def actuator_units(self) -> tuple[str, ...]:
+        """Rad or m."""
+        return self.joint_units
+
+    @property
+    @abstractmethod
+    def characteristic_length(self) -> float:
+        """What makes a rotation a length [m]."""
+
+    @abstractmethod
+    def assembly_modes(self, joints: Array) -> Array:
+        """(m,) -> (k, n), every real pose with these joints."""
+
+    @abstractmethod
+    def forward(self, joints: Array) -> Array:
+        """(..., m) -> (..., n), the working assembly mode; NaN where there is none."""

@@ -1,0 +1,144 @@
+"""Delta (Clavel; Khalil and Dombre 2002, 8.5.3): rotary arms and pairs of rods translate a plate."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import ClassVar
+
+import casadi as ca
+import numpy as np
+
+from kinematics.bodies import Bodies
+from kinematics.errors import InvalidShape
+from kinematics.geometry import GeometryRecord, angle, length
+from kinematics.indices import FviBounds
+from kinematics.interpreter import evaluate
+from kinematics.mechanism import Array, Build
+from kinematics.model import Model
+from kinematics.rotary_limbs import ArmInertia, Limbs, RotaryLimbs, columns, radial_directions
+
+_DEG = math.pi / 180.0
+
+
+@dataclass(frozen=True)
+class DeltaGeometry(GeometryRecord):
+    """A pick-and-place robot of usual size: an assumption of this project, as the chapter gives no dimensions.
+
+    Raises:
+        InvalidGeometry: besides what any geometry refuses: two azimuths are equal.
+    """
+
+    base_radius: float = length(0.200, doc="R, of the actuators' axes")
+    platform_radius: float = length(0.045, doc="r, of the plate")
+    arm_length: float = length(0.350, doc="L, actuator to rod")
+    rod_length: float = length(0.800, doc="l, rod")
+    azimuths: tuple[float, ...] = angle((0.0, 120 * _DEG, 240 * _DEG), doc="alpha, of the limbs")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if abs(_triangle(np.array(self.azimuths))) < 1e-9:
+            raise self._invalid("azimuths", self.azimuths, "three directions, no two the same")
+
+
+@dataclass(frozen=True)
+class DeltaInertia(ArmInertia):
+    """Arms as everywhere here; and the plate.
+
+    Attributes:
+        plate_mass: the payload is a point on it.
+    """
+
+    plate_mass: float = 0.45
+
+
+class Delta(RotaryLimbs):
+    """Pose [x, y, z] of the plate's centre, joints q1..q3 measured from e_z outward; elbows out."""
+
+    Geometry = DeltaGeometry
+    Inertia = DeltaInertia
+    geometry: DeltaGeometry
+    inertia: DeltaInertia
+    pose_names = ("x", "y", "z")
+    joint_names = ("q1", "q2", "q3")
+    joint_units = ("rad",) * 3
+    rotations = ()
+    home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.75)
+    fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
+
+    @property
+    def characteristic_length(self) -> float:
+        """1 m, and without effect: a translation has no rotation to be made a length."""
+        return 1.0
+
+    @staticmethod
+    def limbs(g: SimpleNamespace) -> Limbs:
+        """Arms in vertical planes through e_z."""
+        radial, _ = radial_directions(g.azimuths)
+        return Limbs(g.base_radius * radial, columns(ca.SX([0, 0, 1]), 3), radial, g.arm_length, g.rod_length)
+
+    @staticmethod
+    def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """Each pair of rods by the line midway."""
+        return columns(pose, 3) + g.platform_radius * radial_directions(g.azimuths)[0]
+
+    @staticmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """L l for each J_q,i; l^3 for det J_x."""
+        return ca.repmat(g.arm_length * g.rod_length, 3, 1), g.rod_length**3
+
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+        """Arms with half of the rods; plate and payload with the other half."""
+        bodies = self.arm_bodies(joints, g, self.inertia.rod_mass / 2)
+        bodies.of_pose.particles.append((self.inertia.plate_mass + 1.5 * self.inertia.rod_mass + payload, pose))
+        return bodies
+
+    @classmethod
+    def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
+        """Base, arms, rod pairs by their midlines, plate."""
+        around = [0, 1, 2, 0]
+        lines = {"base": cls.limbs(g).actuators[:, around], "platform": cls.platform_points(pose, g)[:, around]}
+        return lines | cls.limb_lines(pose, joints, g)
+
+    # The forward model: three spheres of radius l, of 2nd degree (8.6.4.1).
+
+    def _both(self, joints: Array) -> Array:
+        """(..., 3) -> (2, ..., 3), the plate below the elbows' plane and above it; NaN where there is none."""
+
+        def build(model: Model) -> Build:
+            centres = self.limbs(model.g).elbows(model.joints) - self.platform_points(ca.SX(3, 1), model.g)
+            second, third = centres[:, 1] - centres[:, 0], centres[:, 2] - centres[:, 0]
+            normal = ca.cross(second, third)
+            square = ca.sumsqr(normal)
+            foot = ca.cross(ca.sumsqr(second) * third - ca.sumsqr(third) * second, normal) / (2 * square)
+            height = ca.sqrt((model.g.rod_length**2 - ca.sumsqr(foot)) / square) * normal
+            return [model.joints], [centres[:, 0] + foot - height, centres[:, 0] + foot + height]
+
+        below, above = evaluate(self.program("spheres", build), joints)
+        both: Array = np.stack([below, above])
+        if _triangle(np.array(self.geometry.azimuths)) < 0.0:  # limbs counted clockwise
+            both = both[::-1]
+        return np.where(np.isfinite(both).all(axis=-1, keepdims=True), both, np.nan)
+
+    def forward(self, joints: Array) -> Array:
+        """(..., 3) -> (..., 3): below the plane of the rods' upper ends (moved inward by r), as at home."""
+        return self._both(self._joints(joints))[0]
+
+    def assembly_modes(self, joints: Array) -> Array:
+        """(3,) -> (k, 3), every real pose with these joints, none or two (one where they meet); the working one first.
+
+        None where the spheres' centres lie on one line, as there is no isolated pose then.
+        """
+        joints = self._joints(joints)
+        if joints.ndim != 1:
+            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        both = self._both(joints)
+        both = both[np.isfinite(both).all(axis=-1)]
+        return both[:1] if len(both) and np.array_equal(both[0], both[1]) else both
+
+
+def _triangle(azimuths: Array) -> float:
+    """Twice the signed area of the triangle on the unit circle, positive counter-clockwise."""
+    x, y = np.cos(azimuths), np.sin(azimuths)
+    return float((x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]))

@@ -1,0 +1,196 @@
+"""Hexa (Pierrot; Khalil and Dombre 2002, 8.5.3): six rotary arms, each with one rod, carry a platform of six freedoms.
+
+Given the arms' angles the elbows are fixed, and what remains is a Gough-Stewart platform: base joints at the elbows,
+legs as long as the rods. Its code gives the forward model.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import ClassVar
+
+import casadi as ca
+import numpy as np
+
+from kinematics.bodies import Bodies
+from kinematics.errors import InvalidShape
+from kinematics.geometry import TURN, GeometryRecord, angle, length
+from kinematics.gough_stewart import GoughStewart
+from kinematics.gough_stewart_forward import ForwardSolution, apart, solve_forward
+from kinematics.gough_stewart_geometry import GoughStewartGeometry, symmetric_points
+from kinematics.indices import FviBounds
+from kinematics.interpreter import evaluate
+from kinematics.mechanism import Array, Build
+from kinematics.model import Model
+from kinematics.rotary_limbs import ArmInertia, Limbs, RotaryLimbs, columns, radial_directions
+
+_AROUND = [*range(6), 0]
+_BASE = symmetric_points(0.28, TURN / 18, 0.0)
+_PLATFORM = symmetric_points(0.10, TURN / 18, TURN / 6)
+_IDENTITY = ca.SX(ca.DM.eye(4).reshape((16, 1)))
+
+
+@dataclass(frozen=True)
+class HexaGeometry(GeometryRecord):
+    """A robot of a Delta's size: an assumption of this project, as the chapter gives no dimensions.
+
+    Raises:
+        InvalidGeometry: besides what any geometry refuses: the platform's points lie on one line, about which the
+            platform then turns freely.
+    """
+
+    base_points: tuple[tuple[float, ...], ...] = length(_BASE, minimum=None, doc="P_i, on the arms' axes")
+    platform_points: tuple[tuple[float, ...], ...] = length(
+        _PLATFORM[-1:] + _PLATFORM[:-1], minimum=None, doc="B_i, in the platform's frame"
+    )
+    arm_azimuths: tuple[float, ...] = angle(
+        tuple(TURN / 3 * (i // 2) for i in range(6)), doc="of the arms' vertical planes, outward"
+    )
+    arm_length: float = length(0.300, doc="L, drive to elbow")
+    rod_length: float = length(0.650, doc="l, rod")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        points = np.array(self.platform_points)
+        sizes = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+        if sizes[1] <= 1e-9 * sizes[0]:
+            raise self._invalid("platform_points", self.platform_points, "points that are not on one line")
+
+
+@dataclass(frozen=True)
+class HexaInertia(ArmInertia):
+    """Arms as everywhere here, with one rod each; and the platform.
+
+    Attributes:
+        platform_mass: in six equal particles at the B_i; the payload is a particle at the tool point.
+    """
+
+    rod_mass: float = 0.13
+    platform_mass: float = 0.8
+
+
+class Hexa(RotaryLimbs):
+    """Pose [x, y, z, roll, pitch, yaw], joints q1..q6 measured from e_z outward; elbows out.
+
+    Orientation and twist are the Gough-Stewart platform's.
+    """
+
+    Geometry = HexaGeometry
+    Inertia = HexaInertia
+    geometry: HexaGeometry
+    inertia: HexaInertia
+    pose_names = GoughStewart.pose_names
+    joint_names = GoughStewart.joint_names
+    joint_units = ("rad",) * 6
+    rotations = GoughStewart.rotations
+    home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.55, 0.0, 0.0, 0.0)
+    fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=1.0, force=50.0)
+    pose_rate_map = staticmethod(GoughStewart.pose_rate_map)
+
+    @property
+    def characteristic_length(self) -> float:
+        """Mean distance of the B_i from their centroid [m], as for the Gough-Stewart platform."""
+        points = np.array(self.geometry.platform_points)
+        return float(np.linalg.norm(points - points.mean(axis=0), axis=1).mean())
+
+    @staticmethod
+    def limbs(g: SimpleNamespace) -> Limbs:
+        """Arms in vertical planes."""
+        radial, _ = radial_directions(g.arm_azimuths)
+        return Limbs(ca.reshape(g.base_points, 3, 6), columns(ca.SX([0, 0, 1]), 6), radial, g.arm_length, g.rod_length)
+
+    @staticmethod
+    def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(3, 6) B_i."""
+        return columns(pose[:3], 6) + GoughStewart.rotation(pose) @ ca.reshape(g.platform_points, 3, 6)
+
+    @staticmethod
+    def _as_hexapod(joints: ca.SX, g: SimpleNamespace) -> SimpleNamespace:
+        """The Gough-Stewart platform whose base joints are the elbows and whose legs are the rods."""
+        elbows = ca.vec(Hexa.limbs(g).elbows(joints))
+        return SimpleNamespace(base_points=elbows, platform_points=g.platform_points, Z=_IDENTITY, E=_IDENTITY)
+
+    @classmethod
+    def closure_by_twist(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """The hexapod's, each row times its rod: regular at a pitch of a quarter turn too."""
+        hexapod = cls._as_hexapod(joints, g)
+        legs = GoughStewart.legs(pose, hexapod)
+        unit = GoughStewart.closure_by_twist(pose, joints, hexapod)
+        return -ca.diag(ca.sqrt(ca.sum1(legs * legs))) @ unit
+
+    @staticmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """L l for each J_q,i; the Gough-Stewart platform's 8 rho^3 times l^6 for det J_x."""
+        _, hexapod = GoughStewart.scales(g)
+        return ca.repmat(g.arm_length * g.rod_length, 6, 1), hexapod * g.rod_length**6
+
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+        """Arms with half of the rods; platform with the other half, payload."""
+        rod_end = self.inertia.rod_mass / 2
+        bodies, points = self.arm_bodies(joints, g, rod_end), self.platform_points(pose, g)
+        bodies.of_pose.particles.extend((self.inertia.platform_mass / 6 + rod_end, points[:, i]) for i in range(6))
+        bodies.of_pose.particles.append((payload, pose[:3]))
+        return bodies
+
+    @classmethod
+    def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
+        """Base, arms, rods, platform, tool."""
+        ends = cls.platform_points(pose, g)
+        lines = {"base": cls.limbs(g).actuators[:, _AROUND], "platform": ends[:, _AROUND]}
+        return lines | cls.limb_lines(pose, joints, g) | {"tool": ca.horzcat(ca.sum2(ends) / 6, pose[:3])}
+
+    # The forward model.
+
+    def leg_errors(self, pose: Array, joints: Array) -> tuple[Array, Array]:
+        """(k, 6) what the rods lack to reach from the elbows to the platform [m], and the hexapod's Jacobian."""
+
+        def build(model: Model) -> Build:
+            hexapod = self._as_hexapod(model.joints, model.g)
+            lengths = GoughStewart.inverse_closed_form(model.pose, hexapod)
+            jacobian = -GoughStewart.closure_by_twist(model.pose, model.joints, hexapod)
+            return [model.pose, model.joints], [model.g.rod_length - lengths, jacobian]
+
+        errors, jacobian = evaluate(self.program("hexapod", build), pose, joints)
+        return errors, jacobian
+
+    def leg_sizes(self, joints: Array) -> tuple[Array, Array]:
+        """(k,) the rods' length, and the largest number that rounding of an error comes from [m]."""
+        rods = np.full(len(joints), self.geometry.rod_length)
+        points = np.abs(self.geometry.base_points).max() + np.abs(self.geometry.platform_points).max()
+        return rods, rods + self.geometry.arm_length + points
+
+    def forward(self, joints: Array, start: Array | None = None) -> Array:
+        """(..., 6) -> (..., 6): Newton's method from a start near, NaN where it did not converge; [8.6.4.2].
+
+        Args:
+            joints: [rad].
+            start: (..., 6) the current or last pose; `home` if not given.
+        """
+        return self.solve_forward(joints, start).pose
+
+    def solve_forward(self, joints: Array, start: Array | None = None, iterations: int = 30) -> ForwardSolution:
+        """As `forward`, and says where it converged, in how many steps and with which error."""
+        begin = self._poses(np.array(self.home if start is None else start))
+        return solve_forward(self, *self._together(self._joints(joints), begin), iterations)
+
+    def assembly_modes(self, joints: Array) -> Array:
+        """(6,) -> (k, 6), every real pose with these joints, at most 40; the nearest to `home` first.
+
+        Takes some seconds, as other joints make another hexapod.
+
+        Raises:
+            SingularArchitecture: elbows and platform are dependent at every pose, so poses are not isolated.
+            LostPaths: the continuation that finds them could not be certified.
+        """
+        joints = self._joints(joints)
+        if joints.ndim != 1:
+            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        if not np.isfinite(joints).all():
+            return np.empty((0, 6))
+        program = self.program("elbows", lambda m: ([m.joints], [self.limbs(m.g).elbows(m.joints).T]))
+        (elbows,) = evaluate(program, joints)
+        hexapod = GoughStewart(GoughStewartGeometry(tuple(map(tuple, elbows.tolist())), self.geometry.platform_points))
+        modes = hexapod.assembly_modes(np.full(6, self.geometry.rod_length))
+        away = apart(modes, np.array(self.home)[None], self.characteristic_length)[:, 0]
+        return modes[np.argsort(away, kind="stable")]

@@ -1,0 +1,81 @@
+"""Planar 3-PRR (Khalil and Dombre 2002, figure 8.4b)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import casadi as ca
+
+from kinematics.bodies import Bodies
+from kinematics.geometry import TURN, angle, length
+from kinematics.indices import FviBounds
+from kinematics.planar import AZIMUTHS, Planar, PlanarGeometry, PlanarInertia
+from kinematics.rotary_limbs import radial_directions
+
+
+@dataclass(frozen=True)
+class Planar3PRRGeometry(PlanarGeometry):
+    """Rails along the tangents of the base's circle."""
+
+    rod_lengths: tuple[float, ...] = length((0.55,) * 3, doc="l_i, slider to platform")
+    rail_angles: tuple[float, ...] = angle(tuple(a + TURN / 4 for a in AZIMUTHS), doc="of the rails, from x")
+
+
+class Planar3PRR(Planar):
+    """Pose [x, y, theta], joints q1..q3, the sliders' travels from A_i along their rails.
+
+    Working mode: each slider on the lower side, its rod leading up the rail to the platform.
+    """
+
+    Geometry = Planar3PRRGeometry
+    Inertia = PlanarInertia
+    geometry: Planar3PRRGeometry
+    joint_units = ("m",) * 3
+    fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=200.0, speed=0.3, force=50.0)
+
+    @staticmethod
+    def _rails(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """(3, 3) along and across."""
+        return radial_directions(g.rail_angles)
+
+    @staticmethod
+    def circles(joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """About the sliders."""
+        return Planar.base_points(g) + Planar3PRR._rails(g)[0] @ ca.diag(joints), g.rod_lengths
+
+    @staticmethod
+    def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """Half of |C_i B_i|^2 - l_i^2."""
+        rods = Planar3PRR.circles(joints, g)[0] - Planar.platform_points(pose, g)
+        return (ca.sum1(rods * rods).T - g.rod_lengths**2) / 2
+
+    @staticmethod
+    def _from_rails(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """(3,) where each B_i is along and across its rail."""
+        ends = Planar.platform_points(pose, g) - Planar.base_points(g)
+        along, across = (ca.sum1(ends * d).T for d in Planar3PRR._rails(g))
+        return along, across
+
+    @staticmethod
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """The smaller root."""
+        along, across = Planar3PRR._from_rails(pose, g)
+        return along - ca.sqrt(g.rod_lengths**2 - across**2)
+
+    @staticmethod
+    def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """How much longer each rod is than the way from B_i to its rail [m]."""
+        return g.rod_lengths - ca.fabs(Planar3PRR._from_rails(pose, g)[1])
+
+    @staticmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """l_i for each J_q,i; `determinant_scale` times their product for det J_x."""
+        return g.rod_lengths, Planar.determinant_scale(g) * g.rod_lengths[0] * g.rod_lengths[1] * g.rod_lengths[2]
+
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+        """Drives and half of each rod that the joints move; platform and the other half."""
+        bodies = Bodies()
+        bodies.of_joints.rotors.extend((self.inertia.drive + self.inertia.link_mass / 2, joints[i]) for i in range(3))
+        self.platform_bodies(pose, g, payload, bodies)
+        return bodies

@@ -1,0 +1,164 @@
+"""Limbs of a rotary arm and a rod: what Heli4, Delta, Par4, Hexa and 3-RRR share.
+
+The arm turns about a fixed axis and carries A = P + L (zero cos q + quarter sin q); the rod holds |A - B| = l. Squaring
+gives M cos q + N sin q = G, expressions (10)-(12) of Krut et al. 2006, with two roots; the elbow is kept on the side of
+the line from B to P towards which a quarter turn from `zero` leads: outside, where `quarter` points outward.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+import casadi as ca
+
+from kinematics.bodies import Bodies
+from kinematics.mechanism import Mechanism
+
+
+class Limbs(NamedTuple):
+    """m limbs.
+
+    Attributes:
+        actuators: (3, m) P_i, a point of each arm's axis.
+        zero, quarter: (3, m) unit directions of each arm at q = 0 and a quarter turn on.
+        arm, rod: L and l, one for all or (m,).
+    """
+
+    actuators: ca.SX
+    zero: ca.SX
+    quarter: ca.SX
+    arm: ca.SX
+    rod: ca.SX
+
+    def elbows(self, joints: ca.SX) -> ca.SX:
+        """(3, m) A_i, where the rods meet the arms."""
+        along = self.swing(joints)
+        return self.actuators + along @ ca.diag(ca.repmat(self.arm, joints.numel() // self.arm.numel(), 1))
+
+    def swing(self, joints: ca.SX) -> ca.SX:
+        """(3, m) unit directions of the arms."""
+        return ca.mtimes(self.zero, ca.diag(ca.cos(joints))) + ca.mtimes(self.quarter, ca.diag(ca.sin(joints)))
+
+    def terms(self, platform: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
+        """M_i, N_i, G_i and sqrt(M^2 + N^2 - G^2), NaN where a limb cannot reach its B_i (3, m)."""
+        to_actuator = self.actuators - platform
+        m = 2 * self.arm * ca.sum1(to_actuator * self.zero).T
+        n = 2 * self.arm * ca.sum1(to_actuator * self.quarter).T
+        right = self.rod**2 - ca.sum1(to_actuator * to_actuator).T - self.arm**2
+        return m, n, right, ca.sqrt(m * m + n * n - right * right)
+
+    def inverse(self, platform: ca.SX) -> ca.SX:
+        """(m,) joints in (-pi/2, 3 pi/2]: the cut lies where an arm points against `quarter`."""
+        m, n, right, root = self.terms(platform)
+        return ca.pi / 2 + ca.atan2(n * root - m * right, n * right + m * root)
+
+    def cosines_and_sines(self, platform: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """Both from the root that is kept, without an angle."""
+        m, n, right, root = self.terms(platform)
+        square = m * m + n * n
+        return (m * right - n * root) / square, (n * right + m * root) / square
+
+    def reach(self, platform: ca.SX) -> ca.SX:
+        """(m,) how much longer or shorter each rod could be before B_i left the arm's circle [m]."""
+        to_actuator = self.actuators - platform
+        axis = ca.horzcat(*(ca.cross(self.zero[:, i], self.quarter[:, i]) for i in range(self.zero.shape[1])))
+        across, outward, along = (ca.sum1(to_actuator * d).T for d in (axis, self.quarter, self.zero))
+        distance = ca.sqrt(outward**2 + along**2)
+        nearest = ca.sqrt((distance - self.arm) ** 2 + across**2)
+        farthest = ca.sqrt((distance + self.arm) ** 2 + across**2)
+        return ca.fmin(self.rod - nearest, farthest - self.rod)
+
+
+def radial_directions(azimuths: ca.SX) -> tuple[ca.SX, ca.SX]:
+    """u_i (3, m), radial at these azimuths, and e_z x u_i (3, m)."""
+    c, s, zero = ca.cos(azimuths).T, ca.sin(azimuths).T, ca.SX(1, azimuths.numel())
+    return ca.vertcat(c, s, zero), ca.vertcat(-s, c, zero)
+
+
+def columns(point: ca.SX, count: int) -> ca.SX:
+    """(3, count) the same point in every column."""
+    return ca.repmat(point, 1, count)
+
+
+@dataclass(frozen=True)
+class ArmInertia:
+    """A drive set of the Quattro's class: an assumption of this project, not a datasheet. SI units.
+
+    Attributes:
+        drive: inertia of drive and gear at the joint.
+        arm_mass, arm_centre, arm_factor: the arm's mass, its centre of mass c as a fraction of L, and its inertia about
+            the joint over m c^2.
+        rod_mass: what joins an arm to the platform, one rod or two, half at each end.
+    """
+
+    drive: float = 0.045
+    arm_mass: float = 0.9
+    arm_centre: float = 0.40
+    arm_factor: float = 1.25
+    rod_mass: float = 0.26
+
+
+class RotaryLimbs(Mechanism):
+    """A mechanism whose m limbs are all of this kind: it states where they are and which points they hold."""
+
+    inertia: Any
+
+    @staticmethod
+    @abstractmethod
+    def limbs(g: SimpleNamespace) -> Limbs:
+        """Its limbs."""
+
+    @staticmethod
+    @abstractmethod
+    def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(3, m) B_i, where the rods meet the platform."""
+
+    @classmethod
+    def rods(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(3, m) from B_i to A_i."""
+        return cls.limbs(g).elbows(joints) - cls.platform_points(pose, g)
+
+    @classmethod
+    def closure(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """Half of |A_i B_i|^2 - l^2: J_q,i is the rod times the arm's tangent, and J_x holds the rods."""
+        rods = cls.rods(pose, joints, g)
+        return (ca.sum1(rods * rods).T - cls.limbs(g).rod ** 2) / 2
+
+    @classmethod
+    def inverse_closed_form(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """Elbows out."""
+        return cls.limbs(g).inverse(cls.platform_points(pose, g))
+
+    @classmethod
+    def joint_cosines_and_sines(cls, pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """Of the inverse model."""
+        return cls.limbs(g).cosines_and_sines(cls.platform_points(pose, g))
+
+    @classmethod
+    def reach(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """Of each arm and rod [m]."""
+        return cls.limbs(g).reach(cls.platform_points(pose, g))
+
+    def arm_bodies(self, joints: ca.SX, g: SimpleNamespace, rod_end: float) -> Bodies:
+        """Arms with their drives, and `rod_end` [kg] at each elbow."""
+        i, bodies, limbs = self.inertia, Bodies(), self.limbs(g)
+        swing, elbows = limbs.swing(joints), limbs.elbows(joints)
+        arms = ca.repmat(limbs.arm, joints.numel() // limbs.arm.numel(), 1)
+        for limb in range(joints.numel()):
+            centre = i.arm_centre * arms[limb]
+            bodies.of_joints.particles.append((i.arm_mass, limbs.actuators[:, limb] + centre * swing[:, limb]))
+            bodies.of_joints.particles.append((rod_end, elbows[:, limb]))
+            own = (i.arm_factor - 1) * i.arm_mass * centre**2  # beyond the particle at the centre of mass
+            bodies.of_joints.rotors.append((i.drive + own, joints[limb]))
+        return bodies
+
+    @classmethod
+    def limb_lines(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
+        """Arms and rods as polylines, each rod one line."""
+        base, elbows, platform = cls.limbs(g).actuators, cls.limbs(g).elbows(joints), cls.platform_points(pose, g)
+        count = joints.numel()
+        arms = {f"arm {i + 1}": ca.horzcat(base[:, i], elbows[:, i]) for i in range(count)}
+        return arms | {f"rod {i + 1}": ca.horzcat(elbows[:, i], platform[:, i]) for i in range(count)}
