@@ -39,11 +39,10 @@ class LowerBounds:
         """Build the programs.
 
         Raises:
-            InvalidValue: an FVI bound or the length is not above 0, on which the lemmas rely.
+            InvalidValue: the length is not above 0, on which the lemmas rely, as on the FVI bounds, which say so.
         """
-        for value in Numbers.values(1.0, bounds, length):
-            if not (np.isfinite(value) and value > 0.0):
-                raise InvalidValue("FVI bounds and characteristic_length", (bounds, length), "finite numbers > 0")
+        if not (np.isfinite(length) and length > 0.0):
+            raise InvalidValue("characteristic_length", length, "a finite length > 0 m")
         model, numbers = robot.model(), Numbers.symbols()
         intervals = [region.intervals[name] for name in robot.pose_names]
         self.free = np.array([i for i, (low, high) in enumerate(intervals) if low < high], dtype=np.int64)

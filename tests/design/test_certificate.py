@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from design import Box, Cylinder, InvalidRegion, Region, best_bound, certify, worst_poses
-from kinematics import FviBounds, GoughStewart, Heli4, Mechanism, Peppermill, Redundant3T1R, threads
+from kinematics import GoughStewart, Heli4, Mechanism, Peppermill, Redundant3T1R, threads
 from kinematics.errors import InvalidValue
 
 PI = math.pi
@@ -208,7 +208,5 @@ def test_wrong_questions_are_named() -> None:
         certify(Heli4(), CYLINDER, "no_such", at_least=0.1)
     with pytest.raises(InvalidValue, match="characteristic_length"):
         certify(Heli4(), CYLINDER, "fvi", at_least=0.1, characteristic_length=0.0)
-    with pytest.raises(InvalidValue, match="FVI bounds"):
-        certify(Heli4(), CYLINDER, "J_q", at_least=0.1, bounds=FviBounds(1.0, 1.0, -1.0, 1.0))
     with pytest.raises(InvalidValue, match="tolerance"):
         best_bound(Heli4(), CYLINDER, "J_q", 0.0)

@@ -23,6 +23,7 @@ from design import (
 )
 from design.tree import LEFT, OUTSIDE, PROVED
 from kinematics import GoughStewart, Heli4, Mechanism, Peppermill, Redundant3T1R
+from kinematics.errors import InvalidValue
 from tests.design.auditor import Auditor
 
 PI = math.pi
@@ -157,6 +158,8 @@ def test_an_undecided_certificate_proves_nothing() -> None:
 
 def test_a_broken_file_is_named(tmp_path: Path) -> None:
     path = tmp_path / "c.npz"
+    with pytest.raises(InvalidValue, match="characteristic_length"):
+        replay(replace(_proved(), characteristic_length=-1.0), Heli4())
     with pytest.raises(BrokenCertificate, match="cannot be read"):
         load_certificate(path)
     save_certificate(_proved(), path)

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from design.claims import Numbers, claims_of
-from kinematics import GoughStewart, Heli4, Mechanism, Peppermill, Redundant3T1R
+from kinematics import MECHANISMS, Mechanism
 from kinematics.interpreter import bulk, evaluate
 
-ROBOTS = [Heli4(), Redundant3T1R(), Peppermill(), GoughStewart()]
+ROBOTS = [mechanism() for mechanism in MECHANISMS.values()]
 CASES = [(robot, margin) for robot in ROBOTS for margin in robot.margins]
 
 
