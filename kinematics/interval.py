@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 BLOCK = 128
 _EPS = 2.0**-52  # one unit in the last place, at least: twice what a correctly rounded operation is off by
 _TINY = 5e-324
+_MAX = 1.7976931348623157e308
 _LIBRARY = 2.0**-50  # what sine, cosine and arctangent may be off by, relative to 1
 
 (CONST, INPUT, OUTPUT, ASSIGN, ADD, SUB, MUL, DIV, NEG, SQRT, SQ, TWICE, INV, SIN, COS, ATAN2, FABS, FMIN, FMAX) = (
@@ -124,7 +125,7 @@ def _apply(code, same, a, b, c, d, r, s):  # type: ignore[no-untyped-def]
             r[i], s[i] = -b[i], -a[i]
     elif code == TWICE:
         for i in range(r.size):
-            r[i], s[i] = 2.0 * a[i], 2.0 * b[i]
+            r[i], s[i] = min(2.0 * a[i], _MAX), max(2.0 * b[i], -_MAX)  # exact, but for overflow
     elif code == ASSIGN:
         for i in range(r.size):
             r[i], s[i] = a[i], b[i]

@@ -131,6 +131,14 @@ def test_an_infinite_bound_never_disappears(op: Op, bad: tuple[float, float]) ->
         assert math.isinf(low) or math.isinf(high)
 
 
+@pytest.mark.parametrize("op", PLAIN, ids=lambda op: op.name)
+def test_the_ends_of_the_range_of_floats_are_enclosed(op: Op) -> None:
+    for x in (MAX, -MAX, TINY, -TINY, 2.3e-308):
+        for y in (MAX, -MAX, TINY, -TINY, 2.3e-308, 3.0):
+            holds(op, (x, x, x), (y, y, y))
+            holds(op, (min(x, y), max(x, y), x), (y, y, y))
+
+
 def test_overflow_gives_no_bound_and_underflow_a_sound_one() -> None:
     assert operate(Op.MUL, (MAX, MAX), (2.0, 2.0)) == ALL
     assert operate(Op.ADD, (MAX, MAX), (MAX, MAX))[1] == math.inf
