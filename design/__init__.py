@@ -1,19 +1,31 @@
 """Regions, requirements and the synthesis of geometries that meet them."""
 
-from design.errors import InvalidRegion, SynthesisFailed
+from design.certificate import BestBound, Certificate, best_bound, certify
+from design.certificate_file import load_certificate, save_certificate
+from design.errors import BrokenCertificate, InvalidRegion, OtherCertificate, SynthesisFailed
 from design.region import Box, Cylinder, Region
+from design.replay import replay
 from design.requirement import Bounds, Requirement, SumLimit
 from design.search import WorstPoses, worst_poses
 
 __all__ = [
+    "BestBound",
     "Bounds",
     "Box",
+    "BrokenCertificate",
+    "Certificate",
     "Cylinder",
     "InvalidRegion",
+    "OtherCertificate",
     "Region",
     "Requirement",
     "SumLimit",
     "SynthesisFailed",
     "WorstPoses",
+    "best_bound",
+    "certify",
+    "load_certificate",
+    "replay",
+    "save_certificate",
     "worst_poses",
 ]

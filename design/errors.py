@@ -21,3 +21,23 @@ class SynthesisFailed(LinkwrightError):
     def __init__(self, reason: str, status: str) -> None:
         self.reason, self.status = reason, status
         super().__init__(f"no optimum: {reason} (solver status: {status})")
+
+
+class OtherCertificate(LinkwrightError):
+    """A certificate that was made for something else than what is asked."""
+
+    exit_status = 1
+
+    def __init__(self, what: str, found: object, expected: object) -> None:
+        self.what, self.found, self.expected = what, found, expected
+        super().__init__(f"certificate, {what}: made for {found}; expected {expected}")
+
+
+class BrokenCertificate(LinkwrightError):
+    """A certificate that does not prove what it says."""
+
+    exit_status = 1
+
+    def __init__(self, reason: str, box: object = None) -> None:
+        self.reason, self.box = reason, box
+        super().__init__(f"certificate: {reason}{f', box {box}' if box is not None else ''}")

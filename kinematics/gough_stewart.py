@@ -143,6 +143,13 @@ class GoughStewart(Mechanism):
         derivative = ca.jacobian(joints - _lengths(legs), twist)
         return ca.substitute(derivative, twist, ca.SX.zeros(6))
 
+    @classmethod
+    def cleared_j_x(cls) -> tuple[ca.SX, ca.SX]:
+        """Rows of half the squared lengths, which are polynomial; divided by the lengths they are J_x."""
+        model, twist = cls.model(), ca.SX.sym("twist", 6)
+        squares = ca.sum1(cls.legs(model.pose, model.g, twist) ** 2).T / 2
+        return ca.substitute(ca.jacobian(squares, twist), twist, ca.SX.zeros(6)), model.inverse
+
     @staticmethod
     def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """[8.11]; unique, as a length is positive."""

@@ -50,6 +50,12 @@ class Mechanism(Definition):
         """The symbolic model, shared by all robots of this class."""
         return model_of(cls)
 
+    @classmethod
+    def cleared_j_x(cls) -> tuple[ca.SX, ca.SX]:
+        """K (m, n) and k (m,) > 0 with J_x = diag(1 / k) K in the working mode; K without the divisors of its rows."""
+        model = cls.model()
+        return model.j_x_at_pose, ca.SX.ones(model.j_x_at_pose.shape[0])
+
     def inverse(self, pose: Array) -> Array:
         """(..., n) -> (..., m) joints of the working mode; a NaN row where a limb cannot reach."""
         return self._evaluate("inverse", lambda model: [model.inverse], pose)[0]

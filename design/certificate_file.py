@@ -1,0 +1,85 @@
+"""Certificates as files: an npz archive of plain arrays with a JSON header; nothing in it is ever executed."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from design.certificate import Certificate
+from design.errors import BrokenCertificate
+from design.region import Box, Cylinder, Region
+from kinematics import FviBounds
+from kinematics.errors import LinkwrightError
+
+_PLAIN: dict[str, type] = {
+    "mechanism": str,
+    "digest": str,
+    "margin": str,
+    "at_least": float,
+    "characteristic_length": float,
+    "version": str,
+    "status": str,
+    "boxes": int,
+}
+
+
+def save_certificate(certificate: Certificate, path: Path) -> None:
+    """Write it; the name should end in .npz. Numbers keep every bit."""
+    header: dict[str, Any] = {key: getattr(certificate, key) for key in _PLAIN}
+    header |= {"region": _region_record(certificate.region), "bounds": asdict(certificate.bounds)}
+    pose = certificate.counterexample
+    with path.open("wb") as file:
+        np.savez_compressed(
+            file,
+            header=np.array(json.dumps(header)),
+            counterexample=np.empty(0) if pose is None else pose,
+            codes=certificate.codes,
+            left=certificate.left,
+        )
+
+
+def load_certificate(path: Path) -> Certificate:
+    """Read it back; what it claims is still to be checked by `replay`.
+
+    Raises:
+        BrokenCertificate: no such archive, or a part of it is missing or not what it should be.
+    """
+    try:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
+            header = json.loads(str(archive["header"]))
+            pose, codes, left = (archive[key] for key in ("counterexample", "codes", "left"))
+        if codes.dtype != np.int8 or codes.ndim != 1:
+            raise BrokenCertificate(f"its codes are {codes.dtype} of shape {codes.shape}")
+        return Certificate(
+            **{key: kind(header[key]) for key, kind in _PLAIN.items()},
+            region=_region(header["region"]),
+            bounds=FviBounds(**{key: float(value) for key, value in header["bounds"].items()}),
+            counterexample=pose if pose.size else None,
+            codes=codes,
+            left=left,
+        )
+    except BrokenCertificate:
+        raise
+    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, LinkwrightError) as error:
+        raise BrokenCertificate(f"the file {path} cannot be read: {error}") from error
+
+
+def _region_record(region: Region) -> dict[str, Any]:
+    if isinstance(region, Cylinder):
+        rest = {name: list(v) for name, v in region.intervals.items() if name not in ("x", "y")}
+        return {"kind": "Cylinder", "radius": region.radius, "intervals": rest}
+    return {"kind": "Box", "intervals": {name: list(v) for name, v in region.intervals.items()}}
+
+
+def _region(record: dict[str, Any]) -> Region:
+    intervals = {name: (float(low), float(high)) for name, (low, high) in record["intervals"].items()}
+    if record["kind"] == "Cylinder":
+        return Cylinder(radius=record["radius"], **intervals)
+    if record["kind"] == "Box":
+        return Box(**intervals)
+    raise BrokenCertificate(f"its region is a {record['kind']}")

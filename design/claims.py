@@ -1,0 +1,165 @@
+"""What has to be shown for `margin >= bound`: expressions that must be at least 0, without norms and moduli.
+
+Interval bounds of a quotient of norms are wide and those of the determinants behind it are far tighter, so each margin
+is rewritten. The lemmas:
+
+- |u| >= c for a continuous u on a connected region: s u - c >= 0 with one sign s = +-1 implies it for every c, and for
+  c > 0 no other way exists. The sign is taken at the region's middle; a wrong one only fails to prove.
+- det J for J = diag(1 / k) K, k > 0, and any square regular S: s det(K S) - c prod(k) |det S| >= 0 with det S not 0 and
+  s its sign; S is near K^-1 in the middle of the box, which makes K S nearly the identity over it.
+- The volume sqrt(det J^T J) >= c > 0: the sum of the squared minors less c^2.
+- Speed i of the FVI, q'_max / (v_wl |j_i|) >= c > 0, with j_i = a_i / b_i a row of J_mw:
+  q'_max^2 b_i^2 - c^2 v_wl^2 |a_i|^2 >= 0.
+- Force i, tau_max / (f_wl |p_i|) >= c > 0, p_i = J_mw^+ e_i: with J = J_mw S, M = J^T J and det M > 0 it is
+  p_i = S adj(M) J^T e_i / det M, so tau_max^2 det(M)^2 - c^2 f_wl^2 |S adj(M) J^T e_i|^2 >= 0. S comes from the QR
+  factors in the middle of the box, so M is nearly the identity. A square J_mw = diag(1 / b) A needs no M: with
+  A S in place of J, p_i = b_i S adj(A S) e_i / det(A S). Then b_i = 0 breaks speed i, as a_i = 0 would break det A.
+
+That the scales are positive is claimed with the rest; the FVI's own numbers must be. S is an input of its own: any
+numbers are right, good ones only make the bounds tight.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from types import SimpleNamespace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from kinematics import FviBounds, Mechanism
+from kinematics.indices import homogeneous
+from kinematics.linear import adjugate, determinant, volume
+
+Array = np.ndarray
+_POSITIVE = 1e-250  # what is at least this is more than 0
+_REGULAR = 1e-6  # what det M, about 1 in the middle of a box, must exceed
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """Symbols of the claim's own numbers, which the geometry's join; all are fixed before anything is evaluated."""
+
+    bound: ca.SX
+    fvi: Any  # the fields of FviBounds
+    length: Any
+
+    @classmethod
+    def symbols(cls) -> Numbers:
+        """Fresh ones."""
+        fvi = SimpleNamespace(**{f.name: ca.SX.sym(f.name) for f in fields(FviBounds)})
+        return cls(ca.SX.sym("bound"), fvi, ca.SX.sym("length"))
+
+    @property
+    def vector(self) -> ca.SX:
+        """(6,) in the order of `values`."""
+        f = self.fvi
+        return ca.vertcat(self.bound, f.joint_speed, f.joint_effort, f.speed, f.force, self.length)
+
+    @staticmethod
+    def values(bound: float, fvi: FviBounds, length: float) -> list[float]:
+        """What the symbols stand for."""
+        return [bound, fvi.joint_speed, fvi.joint_effort, fvi.speed, fvi.force, length]
+
+
+@dataclass(frozen=True)
+class Claims:
+    """Expressions (c,) that must be at least 0 over the region; `scaling` S holds the symbols of a square matrix.
+
+    `matrix` is what S is made from, in the middle of each box; None where no S stands in the expressions.
+    """
+
+    expressions: ca.SX
+    scaling: ca.SX
+    matrix: ca.SX | None = None
+
+
+def claims_of(robot: Mechanism, margin: str, numbers: Numbers, bound: float, inside: Array) -> Claims:
+    """The claims of one margin.
+
+    Args:
+        numbers: symbols for the bound and what the FVI is measured with.
+        bound: the bound's value; where it is not above 0 the plain components serve.
+        inside: (n,) a pose of the region, which gives the signs.
+    """
+    maker = {"det_J_x": _det_j_x, "J_q": _j_q, "det_J_q": _det_j_q, "fvi": _fvi}.get(margin)
+    if maker is not None and bound > 0.0:
+        return maker(robot, numbers, inside)
+    components = robot.margin_components(margin, numbers.fvi, numbers.length)
+    parts = [part for i in range(components.numel()) for part in _sides(components[i])]
+    if bound > 0.0:
+        parts = [_signed(robot, p.dep(0), inside) if p.op() == ca.OP_FABS else p for p in parts]
+    return Claims(ca.vertcat(*parts) - numbers.bound, ca.SX(0, 0))
+
+
+def _sides(component: ca.SX) -> list[ca.SX]:
+    """A minimum's two sides, each to be shown."""
+    if component.op() == ca.OP_FMIN:
+        return [*_sides(component.dep(0)), *_sides(component.dep(1))]
+    return [component]
+
+
+def _signed(robot: Mechanism, expression: ca.SX, inside: Array) -> ca.SX:
+    """Times the signs that it has at a pose."""
+    model = robot.model()
+    at = ca.Function("sign", [model.pose, model.geometry], [expression])(inside, robot.geometry.vector())
+    return ca.SX(np.where(np.array(at) < 0.0, -1.0, 1.0)) * expression
+
+
+def _det_j_x(robot: Mechanism, numbers: Numbers, inside: Array) -> Claims:
+    model = robot.model()
+    scale = robot.scales(model.g)[1]
+    if len(robot.joint_names) != len(robot.pose_names):
+        square = volume(model.j_x_at_pose) ** 2 - (numbers.bound * scale) ** 2
+        return Claims(ca.vertcat(square, scale - _POSITIVE), ca.SX(0, 0))
+    matrix, factors = robot.cleared_j_x()
+    n = matrix.shape[0]
+    scaling = ca.SX.sym("scaling", n, n)
+    at = ca.Function("matrix", [model.pose, model.geometry], [matrix])(inside, robot.geometry.vector())
+    sign = -1.0 if np.linalg.det(np.nan_to_num(np.array(at))) < 0.0 else 1.0
+    size, product = sign * determinant(scaling), ca.SX(1)
+    for i in range(n):
+        product *= factors[i]
+    expression = determinant(matrix @ scaling) - numbers.bound * scale * product * size
+    positive = ca.vertcat(size, factors, scale) - _POSITIVE
+    return Claims(ca.vertcat(expression, positive), scaling, matrix)
+
+
+def _j_q(robot: Mechanism, numbers: Numbers, inside: Array) -> Claims:
+    model = robot.model()
+    scale = robot.scales(model.g)[0]
+    moduli = _signed(robot, model.j_q_at_pose, inside)
+    return Claims(ca.vertcat(moduli - numbers.bound * scale, scale - _POSITIVE), ca.SX(0, 0))
+
+
+def _det_j_q(robot: Mechanism, numbers: Numbers, inside: Array) -> Claims:
+    model = robot.model()
+    scale, product = robot.scales(model.g)[0], ca.SX(1)
+    for i in range(model.j_q_at_pose.numel()):
+        product *= model.j_q_at_pose[i] / scale[i]
+    claim = _signed(robot, product, inside) - numbers.bound
+    return Claims(ca.vertcat(claim, scale - _POSITIVE), ca.SX(0, 0))
+
+
+def _fvi(robot: Mechanism, numbers: Numbers, inside: Array) -> Claims:  # noqa: ARG001
+    model, fvi = robot.model(), numbers.fvi
+    j_mw = homogeneous(model.actuator_jacobian, robot.rotations, numbers.length)
+    m, n = j_mw.shape
+    rows, divisors = j_mw, ca.SX.ones(m)
+    if model.drives.is_eye():
+        rows, divisors = homogeneous(model.j_x_at_pose, robot.rotations, numbers.length), model.j_q_at_pose
+    speeds = [
+        (fvi.joint_speed * divisors[i]) ** 2 - (numbers.bound * fvi.speed) ** 2 * ca.sumsqr(rows[i, :])
+        for i in range(m)
+    ]
+    matrix, sizes = (rows, divisors) if m == n else (j_mw, ca.SX.ones(m))
+    scaling = ca.SX.sym("scaling", n, n)
+    scaled = matrix @ scaling
+    cofactors, det = adjugate(scaled if m == n else scaled.T @ scaled)
+    columns = scaling @ (cofactors if m == n else cofactors @ scaled.T)
+    forces = [
+        (fvi.joint_effort * det) ** 2 - (numbers.bound * fvi.force * sizes[i]) ** 2 * ca.sumsqr(columns[:, i])
+        for i in range(m)
+    ]
+    return Claims(ca.vertcat(*speeds, *forces, det - _REGULAR), scaling, matrix)

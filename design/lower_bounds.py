@@ -1,0 +1,146 @@
+"""Rigorous lower bounds of the claims over boxes of poses.
+
+Two enclosures of each claim f over a box X with midpoint m: the natural one, and the centred form
+f(m) + G(X) (X - m) with the gradient's enclosure G. The centred form holds because finite natural bounds say that f is
+defined, hence smooth, on all of the box, and G encloses every gradient on it. All of it is rounded outward.
+"""
+
+from __future__ import annotations
+
+import casadi as ca
+import numba
+import numpy as np
+
+from design.claims import Numbers, claims_of
+from design.region import Region
+from kinematics import FviBounds, Mechanism
+from kinematics.box_program import BoxProgram
+from kinematics.errors import InvalidValue
+from kinematics.interpreter import bulk, evaluate
+from kinematics.interval import enclose
+from kinematics.program import Program
+from kinematics.threads import over_spans
+
+Array = np.ndarray
+_UP = 1.0 + 2.0**-48  # covers the roundings of products and of their sum over fewer than ten coordinates
+_TINY = 1e-300
+
+
+class LowerBounds:
+    """The claims of one margin and bound over boxes of a region.
+
+    Attributes:
+        free: which pose coordinates are not fixed by the region; boxes may be split along these.
+    """
+
+    def __init__(
+        self, robot: Mechanism, region: Region, margin: str, at_least: float, bounds: FviBounds, length: float
+    ) -> None:
+        """Build the programs.
+
+        Raises:
+            InvalidValue: the length is not above 0, on which the lemmas rely, as on the FVI bounds, which say so.
+        """
+        if not (np.isfinite(length) and length > 0.0):
+            raise InvalidValue("characteristic_length", length, "a finite length > 0 m")
+        model, numbers = robot.model(), Numbers.symbols()
+        intervals = [region.intervals[name] for name in robot.pose_names]
+        self.free = np.array([i for i, (low, high) in enumerate(intervals) if low < high], dtype=np.int64)
+        self._extent = np.array([high - low if high > low else 1.0 for low, high in intervals])
+        middle = region.from_unit(np.full(region.dimension, 0.5), robot.pose_names)
+        claims = claims_of(robot, margin, numbers, at_least, middle)
+        fixed = [*robot.geometry.vector(), *Numbers.values(at_least, bounds, length)]
+        moving = ca.vertcat(*(model.pose[int(i)] for i in self.free)) if self.free.size else ca.SX(0, 1)
+        gradient = ca.jacobian(claims.expressions, moving)
+        symbols = [model.pose, ca.vec(claims.scaling), model.geometry, numbers.vector]
+
+        def program(*outputs: ca.SX) -> BoxProgram:
+            return BoxProgram.of(
+                Program.of(ca.Function("claims", symbols, ca.cse([ca.densify(o) for o in outputs]))), fixed
+            )
+
+        self._count = claims.expressions.numel()
+        self._with_gradient, self._plain = program(claims.expressions, gradient), program(claims.expressions)
+        self._size = claims.scaling.shape[0]
+        self._matrix = _plain_program(robot, claims.matrix, numbers, fixed) if claims.matrix is not None else None
+
+    def lowest(self, low: Array, high: Array) -> tuple[Array, Array]:
+        """Lower bounds and where to split.
+
+        Args:
+            low, high: (k, n) boxes.
+
+        Returns:
+            (k,) lower bound of the smallest claim, and (k, free) how much of the open claims' spread each coordinate
+            makes; infinite where it is unknown.
+        """
+        middle = np.clip(0.5 * low + 0.5 * high, low, high)
+        scaling = self._scaling(middle)
+        natural, highest = enclose(self._with_gradient, np.hstack([low, scaling]), np.hstack([high, scaling]))
+        at = np.hstack([middle, scaling])
+        point, _ = enclose(self._plain, at, at)
+        reach = np.nextafter(np.maximum(high - middle, middle - low)[:, self.free], np.inf)
+        lowest, spread = np.empty(len(low)), np.empty((len(low), self.free.size))
+        over_spans(
+            len(low),
+            lambda s: _combine(self._count, natural[s], highest[s], point[s], reach[s], lowest[s], spread[s]),
+        )
+        return lowest, spread
+
+    def axis(self, low: Array, high: Array, spread: Array) -> Array:
+        """(k,) the coordinate to cut: the largest spread, or the widest part of the region where that is unknown."""
+        if not self.free.size:
+            return np.zeros(len(low), dtype=np.int64)
+        unknown = ~np.isfinite(spread).all(axis=1) | (spread == 0.0).all(axis=1)
+        spread = np.where(unknown[:, None], ((high - low) / self._extent)[:, self.free], spread)
+        return self.free[spread.argmax(axis=1)]
+
+    def _scaling(self, middle: Array) -> Array:
+        """(k, size^2) the matrices S, column by column: R^-1 of the QR factors, or the inverse of a square matrix."""
+        if self._matrix is None:
+            return np.empty((len(middle), 0))
+        (values,) = evaluate(self._matrix, middle)
+        size = np.abs(values).max(axis=(-2, -1), initial=0.0)
+        usable = np.isfinite(size) & (size > 1e-30) & (size < 1e30)  # NaN is neither
+        eye = np.eye(self._size)
+        result = np.broadcast_to(eye, (len(middle), self._size, self._size)).copy()
+        size = size[usable][:, None, None]
+        values = values[usable] / size
+        if values.shape[-2] != values.shape[-1]:
+            values = np.linalg.cholesky(np.swapaxes(values, -1, -2) @ values + 1e-14 * eye, upper=True)
+        regular = np.abs(np.linalg.det(values)) > 1e-200
+        result[np.flatnonzero(usable)[regular]] = np.linalg.inv(values[regular]) / size[regular]
+        return np.swapaxes(result, -1, -2).reshape(len(middle), self._size**2)
+
+
+def _plain_program(robot: Mechanism, matrix: ca.SX, numbers: Numbers, fixed: list[float]) -> Program:
+    model = robot.model()
+    symbols = ca.vertcat(model.geometry, numbers.vector)
+    matrix = ca.substitute(matrix, symbols, ca.SX(fixed))
+    return bulk(ca.Function("matrix", [model.pose], [ca.densify(matrix)]))
+
+
+@numba.njit(nogil=True, cache=True, error_model="numpy")
+def _combine(count, natural, highest, point, reach, lowest, spread):  # type: ignore[no-untyped-def]
+    """Centred form of each claim, rounded outward; its smallest lower bound and the open claims' spread."""
+    n = reach.shape[1]
+    for i in range(natural.shape[0]):
+        least = np.inf
+        spread[i, :] = 0.0
+        for c in range(count):
+            best = natural[i, c]
+            if not best >= 0.0:
+                loss, width = 0.0, highest[i, c] - best
+                for k in range(n):
+                    j = count + c * n + k
+                    loss += max(abs(natural[i, j]), abs(highest[i, j])) * reach[i, k]
+                # Finite natural bounds: the claim is defined on all of the box.
+                if width - width == 0.0 and loss - loss == 0.0:
+                    centred = point[i, c] - (loss * _UP + _TINY)
+                    best = max(best, centred - abs(centred) * 2.0**-52 - _TINY)
+                if not best >= 0.0:
+                    for k in range(n):
+                        j = count + c * n + k
+                        spread[i, k] = max(spread[i, k], max(abs(natural[i, j]), abs(highest[i, j])) * reach[i, k])
+            least = min(least, best)
+        lowest[i] = least

@@ -1,0 +1,212 @@
+"""Proved, refuted and undecided, each where the truth is known."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from design import Box, Cylinder, InvalidRegion, Region, best_bound, certify, worst_poses
+from kinematics import GoughStewart, Heli4, Mechanism, Peppermill, Redundant3T1R, threads
+from kinematics.errors import InvalidValue
+
+PI = math.pi
+CYLINDER = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-PI, PI))
+PART = Cylinder(radius=0.3, z=(-0.72, -0.68), theta=(-0.5, 0.5))
+YZ = Box(x=0.0, y=(-0.3, 0.3), z=(-0.3, 0.3), theta=(-PI / 2, PI / 2))
+CORNER = Box(x=0.0, y=(0.25, 0.3), z=(0.25, 0.3), theta=(0.5, 0.9))
+HEXAPOD = Box(x=(-0.1, 0.1), y=(-0.1, 0.1), z=(0.5, 0.7), roll=(-0.2, 0.2), pitch=(-0.2, 0.2), yaw=(-0.2, 0.2))
+SCREWS = Box(x=(-0.2, 0.2), y=(-0.2, 0.2), z=(-0.05, 0.05), theta=(-2 * PI, 2 * PI))
+
+
+@pytest.mark.parametrize(
+    ("robot", "region", "margin", "at_least"),
+    [
+        (Heli4(), CYLINDER, "internal_determinant", 0.45),
+        (Heli4(), CYLINDER, "det_J_x", 0.45),
+        (Heli4(), CYLINDER, "J_q", 0.4),
+        (Heli4(), CYLINDER, "reach", 0.01),
+        (Heli4(), CYLINDER, "fvi", 0.8),
+        (Heli4(), PART, "det_J_q", 0.1),
+        (Peppermill(), SCREWS, "det_J_x", 1e-6),
+        (Peppermill(), SCREWS, "J_q", 1e-6),
+        (Redundant3T1R(), CORNER, "fvi", 1.0),
+        (Redundant3T1R(), CORNER, "det_J_x", 0.02),
+        (Redundant3T1R(), CORNER, "internal_determinant", 0.01),
+    ],
+)
+def test_what_holds_everywhere_is_proved(robot: Mechanism, region: Region, margin: str, at_least: float) -> None:
+    found = certify(robot, region, margin, at_least=at_least)
+    assert found.status == "proved"
+    assert found.counterexample is None
+    assert found.boxes > 0
+    assert len(found.left) == 0
+    assert worst_poses(robot, region, margin, about=20_000).value >= at_least
+
+
+def test_a_hexapod_has_no_singularity_in_six_dimensions() -> None:
+    assert certify(GoughStewart(), HEXAPOD, "det_J_x", at_least=1e-6).status == "proved"
+
+
+def test_the_redundant_robot_keeps_its_fvi_above_one_everywhere() -> None:
+    """The paper checks nine angles of this region."""
+    assert certify(Redundant3T1R(), YZ, "fvi", at_least=1.0).status == "proved"
+
+
+@pytest.mark.parametrize(
+    ("robot", "region", "margin", "at_least"),
+    [
+        (Heli4(), CYLINDER, "internal_determinant", 0.49),
+        (Heli4(), CYLINDER, "J_q", 0.44),
+        (Heli4(), CYLINDER, "fvi", 1.0),
+        (Redundant3T1R(), YZ, "fvi", 1.01),
+        (GoughStewart(), HEXAPOD, "det_J_x", 0.22),
+        (Peppermill(), SCREWS, "J_q", 0.51),
+    ],
+)
+def test_what_fails_somewhere_is_refuted_by_a_pose_inside(
+    robot: Mechanism, region: Region, margin: str, at_least: float
+) -> None:
+    found = certify(robot, region, margin, at_least=at_least)
+    assert found.status == "refuted"
+    assert found.counterexample is not None
+    assert region.contains(found.counterexample[None], robot.pose_names).all()
+    assert float(robot.margin(margin, found.counterexample)) < at_least
+
+
+def test_a_claim_false_only_between_two_grid_angles_is_refuted() -> None:
+    """On nine angles the FVI keeps above a bound that it breaks between them."""
+    robot = Redundant3T1R()
+    region = Box(x=0.0, y=0.3, z=0.3, theta=(-PI / 2, PI / 2))
+    angles = np.linspace(-PI / 2, PI / 2, 9)
+    poses = np.column_stack([np.zeros(9), np.full(9, 0.3), np.full(9, 0.3), angles])
+    on_grid = float(robot.margin("fvi", poses).min())
+    true_worst = worst_poses(robot, region, "fvi", about=10_000).value
+    assert true_worst < on_grid - 1e-3
+    at_least = 0.5 * (true_worst + on_grid)
+    assert (robot.margin("fvi", poses) >= at_least).all()
+    found = certify(robot, region, "fvi", at_least=at_least)
+    assert found.status == "refuted"
+    assert found.counterexample is not None
+    assert np.abs(angles - found.counterexample[3]).min() > 1e-3
+    assert certify(robot, region, "fvi", at_least=true_worst - 1e-4).status == "proved"
+
+
+def test_boxes_alone_refute_where_the_first_search_finds_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    robot = Heli4()
+    monkeypatch.setattr("design.certificate._suspects", lambda *_: np.empty((0, 4)))
+    found = certify(robot, CYLINDER, "internal_determinant", at_least=0.4862)
+    assert found.status == "refuted"
+    assert float(robot.margin("internal_determinant", found.counterexample)) < 0.4862
+
+
+def test_few_boxes_decide_nothing() -> None:
+    found = certify(Heli4(), CYLINDER, "internal_determinant", at_least=0.45, most_boxes=100)
+    assert found.status == "undecided"
+    assert found.boxes <= 100
+    assert len(found.left) > 0
+    assert found.counterexample is None
+    assert len(found.codes) == 0
+
+
+def test_the_boxes_left_hold_every_pose_that_is_not_proved() -> None:
+    """No proved box may hold a pose below the bound, so the poses near the worst one are all left."""
+    robot = Heli4()
+    worst = worst_poses(robot, CYLINDER, "J_q", about=20_000)
+    found = certify(robot, CYLINDER, "J_q", at_least=worst.value - 1e-13, most_boxes=30_000)
+    assert found.status == "undecided"
+    low, high = found.left[:, 0], found.left[:, 1]
+    assert ((low <= worst.pose + 1e-9) & (worst.pose - 1e-9 <= high)).all(axis=1).any()
+
+
+@pytest.mark.parametrize("margin", ["fvi", "internal_determinant", "det_J_x", "J_q", "det_J_q", "reach"])
+@pytest.mark.parametrize("at_least", [0.0, 1e-9])
+def test_a_region_partly_out_of_reach_is_never_proved(margin: str, at_least: float) -> None:
+    beyond = Box(x=(0.0, 1.4), y=0.0, z=-0.7, theta=0.0)
+    found = certify(Heli4(), beyond, margin, at_least=at_least, most_boxes=20_000)
+    assert found.status == "refuted"
+
+
+def test_a_bound_below_zero_is_not_proved_out_of_reach_either(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The moduli are trivially above it wherever they have a value."""
+    monkeypatch.setattr("design.certificate.first_failing", lambda *_: None)
+    beyond = Box(x=(0.0, 1.4), y=0.0, z=-0.7, theta=0.0)
+    for margin in Heli4.margins:
+        found = certify(Heli4(), beyond, margin, at_least=-1e-3, most_boxes=5_000)
+        assert found.status == "undecided", margin
+
+
+@pytest.mark.parametrize(
+    ("robot", "beyond"),
+    [
+        (Redundant3T1R(), Box(x=0.0, y=(0.0, 2.0), z=0.0, theta=0.0)),
+        (Peppermill(), Box(x=(0.0, 1.0), y=0.0, z=0.0, theta=0.0)),
+    ],
+)
+def test_no_margin_of_any_robot_is_proved_beyond_reach(
+    robot: Mechanism, beyond: Region, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for at_least in (-1.0, 1e-9):
+        for margin in robot.margins[1:]:
+            assert certify(robot, beyond, margin, at_least=at_least, most_boxes=3_000).status == "refuted"
+    monkeypatch.setattr("design.certificate.first_failing", lambda *_: None)
+    for at_least in (-1.0, 1e-9):
+        for margin in robot.margins[1:]:
+            assert certify(robot, beyond, margin, at_least=at_least, most_boxes=3_000).status == "undecided", margin
+
+
+def test_a_modulus_is_above_any_negative_bound_even_where_it_vanishes() -> None:
+    """The sign changes inside, so that no single sign would prove it."""
+    robot = Redundant3T1R()
+    poses = np.array([[0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.4]])
+    assert robot.margin("det_J_x", poses).min() >= 0.0
+    region = Box(x=0.0, y=(-0.05, 0.05), z=(-0.05, 0.05), theta=(-0.2, 0.2))
+    for margin in ("internal_determinant", "det_J_x", "J_q"):
+        assert certify(robot, region, margin, at_least=-1e-3).status == "proved"
+
+
+def test_a_single_pose_is_a_region() -> None:
+    home = Box(x=0.0, y=0.0, z=-0.7, theta=0.0)
+    value = float(Heli4().margin("J_q", np.array([0.0, 0.0, -0.7, 0.0])))
+    assert certify(Heli4(), home, "J_q", at_least=value - 1e-9).status == "proved"
+    assert certify(Heli4(), home, "J_q", at_least=value + 1e-9).status == "refuted"
+    assert certify(Heli4(), home, "J_q", at_least=value).status in ("proved", "undecided")
+
+
+def test_one_thread_gives_the_same_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    both = certify(Heli4(), CYLINDER, "J_q", at_least=0.4)
+    monkeypatch.setattr(threads, "_THREADS", 1)
+    one = certify(Heli4(), CYLINDER, "J_q", at_least=0.4)
+    assert one.status == both.status == "proved"
+    assert one.boxes == both.boxes
+    assert (one.codes == both.codes).all()
+
+
+def test_the_best_bound_is_within_its_tolerance_of_the_sampled_worst() -> None:
+    found = best_bound(Heli4(), CYLINDER, "internal_determinant", 1e-3)
+    assert found is not None
+    assert found.certificate.status == "proved"
+    assert 0.0 <= found.sampled - found.certificate.at_least <= 1e-3 * (1 + 1e-9)
+    independent = worst_poses(Heli4(), CYLINDER, "internal_determinant", about=50_000).value
+    assert found.certificate.at_least <= independent <= found.sampled + 1e-9
+
+
+def test_there_is_no_best_bound_out_of_reach() -> None:
+    beyond = Box(x=(0.0, 1.4), y=0.0, z=-0.7, theta=0.0)
+    assert best_bound(Heli4(), beyond, "J_q", 1e-3) is None
+
+
+def test_wrong_questions_are_named() -> None:
+    with pytest.raises(InvalidRegion):
+        certify(Heli4(), Box(x=0.0, y=0.0, z=-0.7), "J_q", at_least=0.1)
+    with pytest.raises(InvalidValue, match="at_least"):
+        certify(Heli4(), CYLINDER, "J_q", at_least=math.nan)
+    with pytest.raises(InvalidValue, match="most_boxes"):
+        certify(Heli4(), CYLINDER, "J_q", at_least=0.1, most_boxes=0)
+    with pytest.raises(InvalidValue, match="margin"):
+        certify(Heli4(), CYLINDER, "no_such", at_least=0.1)
+    with pytest.raises(InvalidValue, match="characteristic_length"):
+        certify(Heli4(), CYLINDER, "fvi", at_least=0.1, characteristic_length=0.0)
+    with pytest.raises(InvalidValue, match="tolerance"):
+        best_bound(Heli4(), CYLINDER, "J_q", 0.0)
