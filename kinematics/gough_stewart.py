@@ -242,6 +242,7 @@ class GoughStewart(Mechanism):
         """(6,) -> (k, 6), every real pose with these leg lengths, at most 40; the nearest to `initial_pose` first.
 
         Raises:
+            SelfMotion: the platform can move with its legs locked, so there are infinitely many.
             LostPaths: the continuation that finds them could not be certified.
         """
         joints = self._joints(joints)

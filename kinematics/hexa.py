@@ -181,6 +181,7 @@ class Hexa(RotaryLimbs):
 
         Raises:
             SingularArchitecture: elbows and platform are dependent at every pose, so poses are not isolated.
+            SelfMotion: with these joints locked the platform can move.
             LostPaths: the continuation that finds them could not be certified.
         """
         joints = self._joints(joints)
