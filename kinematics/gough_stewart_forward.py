@@ -83,6 +83,18 @@ def step(robot: SixLegs, pose: Array, joints: Array) -> tuple[Array, Array]:
     return np.concatenate([pose[:, :3] + change[:, :3], angles(turned)], axis=1), np.abs(error).max(axis=1)
 
 
+def matched_pose(base: Array, platform: Array, height: Array) -> Array:
+    """(6,) pose with the platform's centroid `height` (3,) from the base's, turned to match it best.
+
+    Args:
+        base, platform: (6, 3) in the reference and in the tool frame.
+    """
+    a, b = base.mean(axis=0), platform.mean(axis=0)
+    u, _, vt = np.linalg.svd((base - a).T @ (platform - b))
+    turned = u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt))]) @ vt
+    return np.concatenate([a + height - turned @ b, angles(turned[None])[0]])
+
+
 def assembly_modes(robot: GoughStewart, joints: Array) -> Array:
     """(6,) -> (k, 6): nearly real solutions of the continuation, polished over the real numbers and proven.
 

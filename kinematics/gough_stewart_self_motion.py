@@ -14,6 +14,7 @@ from kinematics.errors import LinkwrightError
 
 Array = np.ndarray
 
+_FINITE = 1e-8  # |e . e| of a unit point that is a pose
 _STEP = 0.02  # along a null direction, between unit points
 _AWAY = 0.1 * _STEP  # a solution as far as this is another one
 _DEFICIENT = 1e-4  # ratio of singular values from which a null direction is tried
@@ -42,9 +43,10 @@ class SelfMotion(LinkwrightError):
 
 
 def on_continuum(system: Array, points: Array) -> Array:
-    """(7, 8, 8) quadrics, (k, 8) solutions -> (k,) dimension of the set of solutions about each, 0 if isolated."""
+    """(7, 8, 8) quadrics, (k, 8) solutions -> (k,) dimension of the set of solutions about each; 0 if isolated, or no pose."""
     system = system / np.linalg.norm(system, axis=(1, 2), keepdims=True)
-    return np.array([_dimension(system, x) for x in points], dtype=int)
+    finite = np.abs(np.sum(points[:, :4] ** 2, axis=1)) > _FINITE
+    return np.array([_dimension(system, x) if pose else 0 for x, pose in zip(points, finite, strict=True)], dtype=int)
 
 
 def real_point(system: Array, points: Array) -> tuple[Array, int] | None:
@@ -53,7 +55,7 @@ def real_point(system: Array, points: Array) -> tuple[Array, int] | None:
     starts = np.concatenate([points.real, points.real + points.imag, points.real - points.imag])
     settled = _settled(system, starts)
     size = np.sum(settled[:, :4] ** 2, axis=1)
-    for x in settled[(_error(system, settled) < _CLOSED) & (size > _DEFICIENT)]:
+    for x in settled[(_error(system, settled) < _CLOSED) & (size > _FINITE)]:
         dimension = _dimension(system, x)
         if dimension:
             return x, dimension
