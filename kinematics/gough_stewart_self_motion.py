@@ -43,7 +43,7 @@ class SelfMotion(LinkwrightError):
 
 
 def on_continuum(system: Array, points: Array) -> Array:
-    """(7, 8, 8) quadrics, (k, 8) solutions -> (k,) dimension of the set of solutions about each; 0 if isolated, or no pose."""
+    """(7, 8, 8) quadrics, (k, 8) solutions -> (k,) dimension of the solutions about each; 0 if isolated or no pose."""
     system = system / np.linalg.norm(system, axis=(1, 2), keepdims=True)
     finite = np.abs(np.sum(points[:, :4] ** 2, axis=1)) > _FINITE
     return np.array([_dimension(system, x) if pose else 0 for x, pose in zip(points, finite, strict=True)], dtype=int)

@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from kinematics import GoughStewart, LostPaths, SelfMotion
-from kinematics import gough_stewart_forward
+from kinematics import GoughStewart, LostPaths, SelfMotion, gough_stewart_forward
 from kinematics import gough_stewart_modes as modes
 from kinematics.study import displacement, leg_quadrics, point, study_quadric
 from tests.kinematics.gough_stewart_by_hand import (
