@@ -7,6 +7,7 @@ from kinematics.errors import InvalidGeometry, InvalidShape, InvalidValue, Linkw
 from kinematics.gough_stewart import GoughStewart
 from kinematics.gough_stewart_geometry import SingularArchitecture
 from kinematics.gough_stewart_modes import LostPaths
+from kinematics.gough_stewart_self_motion import SelfMotion
 from kinematics.heli4 import Heli4
 from kinematics.hexa import Hexa
 from kinematics.indices import FviBounds
@@ -46,6 +47,7 @@ __all__ = [
     "Planar3RPR",
     "Planar3RRR",
     "Redundant3T1R",
+    "SelfMotion",
     "SingularArchitecture",
     "UnreachablePose",
     "actuator_motion",

@@ -17,11 +17,10 @@ import numpy as np
 from kinematics.bodies import Bodies
 from kinematics.errors import InvalidShape
 from kinematics.geometry import TURN
-from kinematics.gough_stewart_forward import ForwardSolution, assembly_modes, solve_forward
+from kinematics.gough_stewart_forward import ForwardSolution, assembly_modes, matched_pose, solve_forward
 from kinematics.gough_stewart_geometry import GoughStewartGeometry
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Array, Mechanism
-from kinematics.orientation import angles
 
 _SCREW = ("x", "y", "z", "about x", "about y", "about z")
 
@@ -47,8 +46,8 @@ class GoughStewart(Mechanism):
     """Pose [x, y, z, roll, pitch, yaw], joints q1..q6, the leg lengths |A_i B_i|.
 
     A leg reaches every point but its own base joint; `leg_limits` of the geometry adds a stroke, beyond which
-    `inverse` and `forward` give NaN and `reach` is negative. The Jacobians are those of the legs as lines and do not
-    ask for the stroke.
+    `inverse` and `forward` give NaN and `reach` is negative. The Jacobians, and the indices made of them (`fvi`,
+    `isotropic` and so on), are those of the legs as lines and do not ask for the stroke: there `fvi` is finite.
     """
 
     Geometry = GoughStewartGeometry
@@ -81,10 +80,7 @@ class GoughStewart(Mechanism):
         components = np.array(self.geometry.Z)[:3, :3].T @ normal
         signs = [c for c in components[[2, 0, 1]] if abs(c) > 1e-9]
         radii = sum(np.linalg.norm(points, axis=1).mean() for points in (a, b))
-        u, _, vt = np.linalg.svd(a.T @ b)
-        turn = u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt))]) @ vt
-        height = 0.75 * radii * math.copysign(1.0, signs[0]) * normal
-        return np.concatenate([base.mean(axis=0) + height - turn @ platform.mean(axis=0), angles(turn[None])[0]])
+        return matched_pose(base, platform, 0.75 * radii * math.copysign(1.0, signs[0]) * normal)
 
     # Points.
 
@@ -233,6 +229,8 @@ class GoughStewart(Mechanism):
     def forward(self, joints: Array, start: Array | None = None) -> Array:
         """(..., 6) -> (..., 6): Newton's method from a start near, NaN where it did not converge; [8.6.4.2].
 
+        From the default start a far pose may end in another assembly mode; give `start` where the pose is about known.
+
         Args:
             joints: leg lengths [m].
             start: (..., 6) the current or last pose; `initial_pose` if not given.
@@ -249,6 +247,7 @@ class GoughStewart(Mechanism):
         """(6,) -> (k, 6), every real pose with these leg lengths, at most 40; the nearest to `initial_pose` first.
 
         Raises:
+            SelfMotion: the platform can move with its legs locked, so there are infinitely many.
             LostPaths: the continuation that finds them could not be certified.
         """
         joints = self._joints(joints)

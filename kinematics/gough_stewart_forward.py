@@ -6,11 +6,13 @@ converges quadratically from a pose near enough.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from kinematics.gough_stewart_modes import solver
+from kinematics.gough_stewart_modes import LostPaths, solver, turned_real
+from kinematics.gough_stewart_self_motion import SelfMotion, on_continuum, real_point
 from kinematics.orientation import angles, rotation, turn
 from kinematics.study import displacement
 
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 _ROUNDING = 1e-14  # leg error, relative to the sizes involved, that is not worth another step
+_REAL = 1e-2  # imaginary part of a unit point below which a real pose may lie near
+_SURELY_REAL = 1e-10  # and below which one lies there: a conjugate pair is never so close and yet apart
 _LONGEST_TURN = 0.5  # rotation of one step [rad], and its translation over the mean leg length
 
 
@@ -79,23 +83,46 @@ def step(robot: SixLegs, pose: Array, joints: Array) -> tuple[Array, Array]:
     return np.concatenate([pose[:, :3] + change[:, :3], angles(turned)], axis=1), np.abs(error).max(axis=1)
 
 
+def matched_pose(base: Array, platform: Array, height: Array) -> Array:
+    """(6,) pose with the platform's centroid `height` (3,) from the base's, turned to match it best.
+
+    Args:
+        base, platform: (6, 3) in the reference and in the tool frame.
+    """
+    a, b = base.mean(axis=0), platform.mean(axis=0)
+    u, _, vt = np.linalg.svd((base - a).T @ (platform - b))
+    turned = u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt))]) @ vt
+    return np.concatenate([a + height - turned @ b, angles(turned[None])[0]])
+
+
 def assembly_modes(robot: GoughStewart, joints: Array) -> Array:
-    """(6,) -> (k, 6): nearly real solutions of the continuation, polished over the real numbers and proven."""
+    """(6,) -> (k, 6): nearly real solutions of the continuation, polished over the real numbers and proven.
+
+    Raises:
+        SelfMotion, LostPaths: as `GoughStewart.assembly_modes`.
+    """
     if not np.isfinite(joints).all():
         return np.empty((0, 6))
     base, tool = robot.geometry.in_reference_frame(), robot.geometry.in_tool_frame()
     centres = base.mean(axis=0), tool.mean(axis=0)
     a, b = base - centres[0], tool - centres[1]
     unit = float(np.sqrt(np.mean(np.sum(a * a + b * b, axis=1))))
-    modes = solver((a / unit).tobytes(), (b / unit).tobytes())
-    candidates = modes.nearly_real((joints / unit) ** 2)
-    if not len(candidates):
+
+    def poses_of(points: Array) -> Array:
+        turned, place = displacement(points)
+        return np.concatenate([centres[0] + unit * place - turned @ centres[1], angles(turned)], axis=1)
+
+    modes, squares = solver((a / unit).tobytes(), (b / unit).tobytes()), (joints / unit) ** 2
+    ends, imaginary = turned_real(modes.ends(squares))
+    _refuse_self_motion(modes.system(squares), ends, poses_of)
+    near = imaginary < _REAL
+    if not near.any():
         return np.empty((0, 6))
-    turned, place = displacement(candidates)
-    place = centres[0] + unit * place - turned @ centres[1]
-    found = solve_forward(
-        robot, np.broadcast_to(joints, (len(place), 6)), np.concatenate([place, angles(turned)], axis=1), 60
-    )
+    starts = poses_of(ends[near].real)
+    found = solve_forward(robot, np.broadcast_to(joints, starts.shape), starts, 60)
+    dropped = ~found.converged & (imaginary[near] < _SURELY_REAL)
+    if dropped.any():
+        raise LostPaths("these leg lengths", f"{dropped.sum()} real poses that Newton's method leaves", "none")
     poses = found.pose[found.converged]
     if not len(poses):
         return poses
@@ -103,6 +130,16 @@ def assembly_modes(robot: GoughStewart, joints: Array) -> Array:
     poses = poses[[not (gaps[i, :i] < 0.0).any() for i in range(len(poses))]]
     order = np.argsort(apart(poses, robot.initial_pose[None], robot.characteristic_length)[:, 0], kind="stable")
     return poses[order]
+
+
+def _refuse_self_motion(system: Array, ends: Array, poses_of: Callable[[Array], Array]) -> None:
+    stuck = ends[on_continuum(system, ends) > 0]
+    if not len(stuck):
+        return
+    real = real_point(system, stuck)
+    if real is None:
+        raise LostPaths("these leg lengths", "a continuum of complex poses, with no real one known", "isolated poses")
+    raise SelfMotion(poses_of(real[0][None])[0], real[1])
 
 
 def _uncertainty(robot: GoughStewart, poses: Array, unit: float) -> Array:

@@ -8,7 +8,8 @@ In Study's coordinates the closure is seven quadrics in eight homogeneous unknow
 2. Once a geometry: the 40 are followed to this geometry with random complex leg lengths. What arrives with K = e . e
    other than zero is regular (almost every value of a smooth map is), so nothing that is real later is dropped; a
    special geometry keeps fewer, such as 16 where the platform is a triangle.
-3. For each set of leg lengths: those are followed to it. Every isolated pose is the end of some path. The ends are
+3. For each set of leg lengths: those are followed to it. Every isolated pose is the end of some path; an end may also
+   lie on a continuum of poses, which the caller has to refuse (`gough_stewart_self_motion`). The regular ends are
    certified: none twice, and the complex ones in conjugate pairs; else another way is taken. A way can fail, as it may
    pass so near a platform with a pose at infinity that rounding hides the path.
 """
@@ -36,7 +37,6 @@ _ROTATION = 4  # coordinates of e, the first block
 _NEAR_END = 1.0 - 1e-4  # a path that sticks before did not come to a singular end
 _SAME = 1e-6  # distance of unit points below which they are one solution
 _FINITE = 1e-10  # |K| over the square of e's norm above which a point is a displacement
-_REAL = 1e-2  # imaginary part of a unit point below which a real pose may lie near
 _REGULAR = 1e-9  # the last Newton step at an end that counts as a regular solution
 
 
@@ -159,11 +159,15 @@ class ModeSolver:
             stations = [self.start, around, target]
         raise LostPaths("these leg lengths", f"{_ROUTES} ways with a lost path", "one that loses none")
 
-    def nearly_real(self, squares: Array) -> Array:
-        """(6,) squared lengths -> (k, 8) real points at or close to every real solution."""
-        ends = self.ends(squares)
-        turned = ends * np.exp(-0.5j * np.angle(np.sum(ends * ends, axis=1)))[:, None]
-        return turned.real[np.linalg.norm(turned.imag, axis=1) < _REAL]
+    def system(self, squares: Array) -> Array:
+        """(6,) squared lengths -> (7, 8, 8) the quadrics that `ends` solves."""
+        return Platform(self.start.base, self.start.platform, squares).system().real
+
+
+def turned_real(points: Array) -> tuple[Array, Array]:
+    """(k, 8) points, each turned by a phase to make e . e + f . f real, and the norm (k,) of what stays imaginary."""
+    turned = points * np.exp(-0.5j * np.angle(np.sum(points * points, axis=1)))[:, None]
+    return turned, np.linalg.norm(turned.imag, axis=1)
 
 
 def distinct(points: Array) -> Array:

@@ -17,7 +17,7 @@ from kinematics.bodies import Bodies
 from kinematics.errors import InvalidShape
 from kinematics.geometry import TURN, GeometryRecord, angle, length
 from kinematics.gough_stewart import GoughStewart
-from kinematics.gough_stewart_forward import ForwardSolution, apart, solve_forward
+from kinematics.gough_stewart_forward import ForwardSolution, apart, matched_pose, solve_forward
 from kinematics.gough_stewart_geometry import GoughStewartGeometry, symmetric_points
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
@@ -28,6 +28,7 @@ from kinematics.rotary_limbs import ArmInertia, Limbs, RotaryLimbs, columns, rad
 _AROUND = [*range(6), 0]
 _BASE = symmetric_points(0.28, TURN / 18, 0.0)
 _PLATFORM = symmetric_points(0.10, TURN / 18, TURN / 6)
+_DEPTH = 0.55 / (0.300 + 0.650)  # of `home`, over arm and rod
 _IDENTITY = ca.SX(ca.DM.eye(4).reshape((16, 1)))
 
 
@@ -93,6 +94,16 @@ class Hexa(RotaryLimbs):
         """Mean distance of the B_i from their centroid [m], as for the Gough-Stewart platform."""
         points = np.array(self.geometry.platform_points)
         return float(np.linalg.norm(points - points.mean(axis=0), axis=1).mean())
+
+    @property
+    def initial_pose(self) -> Array:
+        """(6,) where `forward` starts unless told otherwise: the platform below the base, turned to match it best.
+
+        Below by a share of arm and rod together; for the default geometry it is `home`.
+        """
+        base, platform = (np.array(p) for p in (self.geometry.base_points, self.geometry.platform_points))
+        below = _DEPTH * (self.geometry.arm_length + self.geometry.rod_length)
+        return matched_pose(base, platform, np.array([0.0, 0.0, -below]))
 
     @staticmethod
     def limbs(g: SimpleNamespace) -> Limbs:
@@ -163,24 +174,27 @@ class Hexa(RotaryLimbs):
     def forward(self, joints: Array, start: Array | None = None) -> Array:
         """(..., 6) -> (..., 6): Newton's method from a start near, NaN where it did not converge; [8.6.4.2].
 
+        From the default start a far pose may end in another assembly mode; give `start` where the pose is about known.
+
         Args:
             joints: [rad].
-            start: (..., 6) the current or last pose; `home` if not given.
+            start: (..., 6) the current or last pose; `initial_pose` if not given.
         """
         return self.solve_forward(joints, start).pose
 
     def solve_forward(self, joints: Array, start: Array | None = None, iterations: int = 30) -> ForwardSolution:
         """As `forward`, and says where it converged, in how many steps and with which error."""
-        begin = self._poses(np.array(self.home if start is None else start))
+        begin = self._poses(self.initial_pose if start is None else start)
         return solve_forward(self, *self._together(self._joints(joints), begin), iterations)
 
     def assembly_modes(self, joints: Array) -> Array:
-        """(6,) -> (k, 6), every real pose with these joints, at most 40; the nearest to `home` first.
+        """(6,) -> (k, 6), every real pose with these joints, at most 40; the nearest to `initial_pose` first.
 
         Takes some seconds, as other joints make another hexapod.
 
         Raises:
             SingularArchitecture: elbows and platform are dependent at every pose, so poses are not isolated.
+            SelfMotion: with these joints locked the platform can move.
             LostPaths: the continuation that finds them could not be certified.
         """
         joints = self._joints(joints)
@@ -192,5 +206,5 @@ class Hexa(RotaryLimbs):
         (elbows,) = evaluate(program, joints)
         hexapod = GoughStewart(GoughStewartGeometry(tuple(map(tuple, elbows.tolist())), self.geometry.platform_points))
         modes = hexapod.assembly_modes(np.full(6, self.geometry.rod_length))
-        away = apart(modes, np.array(self.home)[None], self.characteristic_length)[:, 0]
+        away = apart(modes, self.initial_pose[None], self.characteristic_length)[:, 0]
         return modes[np.argsort(away, kind="stable")]

@@ -9,6 +9,7 @@ from tests.kinematics.family_by_hand import PLANAR, ByHand, poses_of, random_geo
 
 EACH_PLANAR = pytest.mark.parametrize("kind", PLANAR, ids=lambda kind: kind.__name__)
 DEG = np.pi / 180
+SIZES = ("base_points", "platform_points", "arm_length", "rod_length")  # of Hexa
 
 
 def equations(hand, joints):
@@ -255,3 +256,14 @@ def test_hexa_says_where_newtons_method_did_not_converge():
     solution = robot.solve_forward(robot.inverse(robot.home))
     assert solution.converged
     assert solution.iterations <= 3
+
+
+@pytest.mark.parametrize("scale", [0.1, 1.0, 3.0, 10.0])
+def test_hexa_of_any_size_finds_the_poses_near_its_home_from_its_own_start(scale):
+    g = Hexa().geometry
+    sizes = {name: scale * np.array(getattr(g, name)) for name in SIZES}
+    robot, units = Hexa(g.with_values(**sizes)), np.array([scale] * 3 + [1.0] * 3)
+    np.testing.assert_allclose(robot.initial_pose, Hexa.home * units, atol=1e-15 * scale)
+    around = np.random.default_rng(21).uniform(-1, 1, (2000, 6)) * [0.1, 0.1, 0.05, 0.4, 0.4, 0.4]
+    poses = (np.array(Hexa.home) + around) * units
+    assert np.abs((robot.forward(robot.inverse(poses)) - poses) / units).max() < 1e-9

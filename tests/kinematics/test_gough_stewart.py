@@ -211,6 +211,7 @@ def test_leg_limits_bound_the_reach_and_both_models() -> None:
     np.testing.assert_array_equal(robot.margin("reach", poses) >= 0.0, inside)
     np.testing.assert_array_equal(np.isnan(robot.forward(lengths)).all(axis=1), ~inside)
     outside = int(np.argmax(~inside))
+    np.testing.assert_array_equal(robot.fvi(poses), free.fvi(poses))  # of the legs as lines, within the stroke or not
     assert robot.assembly_modes(lengths[outside]).shape == (0, 6)
     with pytest.raises(UnreachablePose) as caught:
         robot.require_reachable(poses[outside])

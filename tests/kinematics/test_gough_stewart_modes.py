@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
-from kinematics import GoughStewart, LostPaths
+from kinematics import GoughStewart, LostPaths, SelfMotion, gough_stewart_forward
 from kinematics import gough_stewart_modes as modes
 from kinematics.study import displacement, leg_quadrics, point, study_quadric
 from tests.kinematics.gough_stewart_by_hand import (
@@ -175,6 +176,56 @@ def test_a_pose_on_a_singularity_is_found_though_two_modes_meet_there() -> None:
         found = which.assembly_modes(joints)
         assert nearest(found, pose) < 1e-5  # a double root is known to half the digits
         assert np.abs(which.inverse(found) - joints).max() < 1e-12
+
+
+_SPATIAL = random_points(np.random.default_rng(13))
+
+
+@pytest.mark.parametrize(
+    ("geometry", "pose", "dimension"),
+    [
+        (Geometry(_SPATIAL, _SPATIAL), [0.5, 0.3, 1.5, 0.0, 0.0, 0.0], 2),  # a sphere of pure translations
+        (Geometry(_SPATIAL * [1, 1, 0], _SPATIAL * [1, 1, 0]), [0.5, 0.3, 1.5, 0.0, 0.0, 0.0], 2),
+        (Geometry.mssm(0.4, 0.4), [0.0, 0.0, 0.6, 0.0, 0.0, 0.0], 1),
+        (Geometry.ssm(0.4, 0.4), [0.0, 0.0, 0.6, 0.0, 0.0, 0.0], 1),
+    ],
+    ids=["congruent", "congruent and flat", "equal triangles", "equal hexagons"],
+)
+def test_a_self_motion_is_refused_by_name(geometry: Geometry, pose: list[float], dimension: int) -> None:
+    """And its pose has these legs; a step along the Jacobian's null space, polished, is another pose that has them."""
+    robot = GoughStewart(geometry)
+    joints = robot.inverse(np.array(pose))
+    with pytest.raises(SelfMotion, match="joints locked") as caught:
+        robot.assembly_modes(joints)
+    assert caught.value.dimension == dimension
+    here = np.array(caught.value.pose)
+    assert np.abs(robot.inverse(here) - joints).max() < 1e-11
+    _, values, vectors = np.linalg.svd(robot.inverse_jacobian(here))
+    steps = 0.05 * vectors[values < 1e-5]
+    others = np.array([polished(robot, moved(here, step), joints) for step in steps])
+    closed = np.abs(robot.inverse(others) - joints).max(axis=1) < 1e-11
+    assert (closed & (pose_errors(others, here) > 0.01)).sum() >= dimension
+
+
+def moved(pose: Array, twist: Array) -> Array:
+    transform = transform_of(pose)
+    transform[:3, :3] = Rotation.from_rotvec(twist[3:]).as_matrix() @ transform[:3, :3]
+    transform[:3, 3] += twist[:3]
+    return pose_of(transform)
+
+
+def polished(robot: GoughStewart, pose: Array, joints: Array) -> Array:
+    for _ in range(40):
+        pose = moved(pose, np.linalg.pinv(robot.inverse_jacobian(pose), rcond=1e-6) @ (joints - robot.inverse(pose)))
+    return pose
+
+
+def test_a_continuum_of_complex_poses_is_never_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where no real pose on it is known, the modes are not certain either."""
+    monkeypatch.setattr(gough_stewart_forward, "real_point", lambda *_: None)
+    robot = GoughStewart(Geometry.mssm(0.4, 0.4))
+    with pytest.raises(LostPaths, match="continuum"):
+        robot.assembly_modes(robot.inverse(np.array([0.0, 0.0, 0.6, 0.0, 0.0, 0.0])))
 
 
 @pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
