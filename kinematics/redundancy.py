@@ -160,8 +160,9 @@ def check_encoders(robot: Mechanism, joints: Array, fit: BestFit, starts: Array,
     worst = _worst(np.where(np.eye(m, dtype=bool), 0.0, alone.residuals))  # (..., 1 + s, m)
     worst = np.where(np.isnan(alone.residuals).any(axis=-1), np.inf, worst)
     suspects = ((worst <= accuracy).any(axis=-2) | np.isinf(worst).all(axis=-2)) & ~consistent[..., None]
-    flat = worst.reshape(*worst.shape[:-2], -1).argmin(axis=-1)[..., None, None]
-    near = np.take_along_axis(alone.pose.reshape(*worst.shape[:-2], -1, len(robot.pose_names)), flat, axis=-2)
+    lead, looked = worst.shape[:-2], worst.shape[-2] * m
+    flat = worst.reshape(*lead, looked).argmin(axis=-1)[..., None, None]
+    near = np.take_along_axis(alone.pose.reshape(*lead, looked, len(robot.pose_names)), flat, axis=-2)
     near = np.where(np.isnan(fit.pose), near[..., 0, :], fit.pose)
     best = least_squares(robot, joints, near, 1.0 - suspects).pose
     best[~_determined(robot.inverse_jacobian(best), 1.0 - suspects)] = np.nan
@@ -171,10 +172,11 @@ def check_encoders(robot: Mechanism, joints: Array, fit: BestFit, starts: Array,
 def _determined(j_m: Array, weights: Array) -> Array:
     """(...,) whether the joints that weigh fix every freedom: rank n of their rows, columns scaled to one."""
     rows = j_m * np.sqrt(weights)[..., None]
-    good = np.isfinite(rows).all(axis=(-2, -1))
+    good = np.asarray(np.isfinite(rows).all(axis=(-2, -1)))
     scaled = rows[good] / np.linalg.norm(rows[good], axis=-2, keepdims=True)
-    good[good] = np.linalg.svd(scaled, compute_uv=False)[..., -1] > _FREE
-    return good
+    determined = np.zeros_like(good)
+    determined[good] = np.linalg.svd(scaled, compute_uv=False)[..., -1] > _FREE
+    return determined
 
 
 def _worst(residuals: Array) -> Array:

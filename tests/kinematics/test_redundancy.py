@@ -147,6 +147,16 @@ def test_a_large_fault_is_never_cleared(size, named):
             assert (check.faulty == joint + 1).mean() >= named
 
 
+@pytest.mark.parametrize("lead", [(), (0,), (2, 3)])
+def test_encoders_are_checked_in_arrays_of_any_shape(lead):
+    poses = np.broadcast_to([0.1, 0.05, 0.2, 0.3], (*lead, 4))
+    check = ROBOT.check_encoders(ROBOT.inverse(poses) + 1e-3 * np.eye(6)[0])
+    assert [v.shape for v in check] == [(*lead, 4), (*lead, 6), lead, (*lead, 6)]
+    assert check.faulty.shape == lead
+    assert (check.faulty == 1).all()
+    assert np.abs(check.pose - poses).max(initial=0.0) < 1e-12
+
+
 def test_two_faults_accuse_nobody_alone():
     joints = faulty(faulty(ROBOT.inverse(poses_of(1_000, seed=7)), 0, seed=7), 5, seed=8)
     check = ROBOT.check_encoders(joints)
