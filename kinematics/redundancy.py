@@ -40,16 +40,19 @@ class BestFit(NamedTuple):
 
 
 class EncoderCheck(NamedTuple):
-    """What the redundancy says of the encoders.
+    """What the redundancy says of the encoders, on the assumption that at most one of them is faulty.
+
+    More faults may pass for one: of one of them, or, at few poses, of an encoder that is sound.
 
     Attributes:
         pose: (..., n) the best fit to all joints that are not suspected (to all, where none is); NaN where those do
             not determine it.
         residuals: (..., m) measured joints less those of the best fit to all [m or rad].
-        consistent: (...,) all residuals are within the encoders' accuracy.
+        consistent: (...,) all residuals are within `accuracy`. A fault stays hidden where it leaves no more than that:
+            to first order, a fault f of encoder i leaves f max_j |v_i . v_j|.
         suspects: (..., m) encoders, each of which alone explains the disagreement, or could not be cleared as the fit
             without it did not converge. One: it is the faulty one. Several: they cannot be told apart. None, though
-            not consistent: more than one is faulty.
+            not consistent: the assumption does not hold.
     """
 
     pose: Array
@@ -149,7 +152,7 @@ def check_encoders(robot: Mechanism, joints: Array, fit: BestFit, starts: Array,
         joints: (..., m) measured.
         fit: the best fit to all of them.
         starts: (..., s, n) further poses to look from, for a fault so large that the fit to all is far off.
-        accuracy: the largest residual that sound encoders leave [m or rad].
+        accuracy: the largest residual that sound encoders leave in a best fit [m or rad].
     """
     if not accuracy > 0.0:
         raise InvalidValue("accuracy", accuracy, "a value > 0")

@@ -288,9 +288,13 @@ class Redundant3T1R(RodLevel):
         Encoders 3 and 4 can never be told apart: the outer arms alone place B_1, which leaves one equation more than
         the angle needs, and either of the two may be the one that is wrong.
 
+        With the default geometry and theta within ±90° a fault of encoder 1, 2, 5 or 6 is seen from 2.5 times the
+        accuracy on at the median of reachable poses, from 6 times on at every one tried; one of 3 or 4 from 4 times on
+        at the median, 25 times at 95 % of them, and not at all where its arm is level with the turn.
+
         Args:
             joints: (..., 6) measured.
-            accuracy: of a sound encoder [m].
+            accuracy: the largest residual that sound encoders leave in a best fit [m].
         """
         joints = self._joints(joints)
         starts = self._home_near(joints)[..., None, :] + np.outer([-1.2, 0.0, 1.2], np.eye(4)[3])
