@@ -40,16 +40,19 @@ class BestFit(NamedTuple):
 
 
 class EncoderCheck(NamedTuple):
-    """What the redundancy says of the encoders.
+    """What the redundancy says of the encoders, on the assumption that at most one of them is faulty.
+
+    More faults may pass for one: of one of them, or, at few poses, of an encoder that is sound.
 
     Attributes:
         pose: (..., n) the best fit to all joints that are not suspected (to all, where none is); NaN where those do
             not determine it.
         residuals: (..., m) measured joints less those of the best fit to all [m or rad].
-        consistent: (...,) all residuals are within the encoders' accuracy.
+        consistent: (...,) all residuals are within `accuracy`. A fault stays hidden where it leaves no more than that:
+            to first order, a fault f of encoder i leaves f max_j |v_i . v_j|.
         suspects: (..., m) encoders, each of which alone explains the disagreement, or could not be cleared as the fit
             without it did not converge. One: it is the faulty one. Several: they cannot be told apart. None, though
-            not consistent: more than one is faulty.
+            not consistent: the assumption does not hold.
     """
 
     pose: Array
@@ -149,7 +152,7 @@ def check_encoders(robot: Mechanism, joints: Array, fit: BestFit, starts: Array,
         joints: (..., m) measured.
         fit: the best fit to all of them.
         starts: (..., s, n) further poses to look from, for a fault so large that the fit to all is far off.
-        accuracy: the largest residual that sound encoders leave [m or rad].
+        accuracy: the largest residual that sound encoders leave in a best fit [m or rad].
     """
     if not accuracy > 0.0:
         raise InvalidValue("accuracy", accuracy, "a value > 0")
@@ -160,8 +163,9 @@ def check_encoders(robot: Mechanism, joints: Array, fit: BestFit, starts: Array,
     worst = _worst(np.where(np.eye(m, dtype=bool), 0.0, alone.residuals))  # (..., 1 + s, m)
     worst = np.where(np.isnan(alone.residuals).any(axis=-1), np.inf, worst)
     suspects = ((worst <= accuracy).any(axis=-2) | np.isinf(worst).all(axis=-2)) & ~consistent[..., None]
-    flat = worst.reshape(*worst.shape[:-2], -1).argmin(axis=-1)[..., None, None]
-    near = np.take_along_axis(alone.pose.reshape(*worst.shape[:-2], -1, len(robot.pose_names)), flat, axis=-2)
+    lead, looked = worst.shape[:-2], worst.shape[-2] * m
+    flat = worst.reshape(*lead, looked).argmin(axis=-1)[..., None, None]
+    near = np.take_along_axis(alone.pose.reshape(*lead, looked, len(robot.pose_names)), flat, axis=-2)
     near = np.where(np.isnan(fit.pose), near[..., 0, :], fit.pose)
     best = least_squares(robot, joints, near, 1.0 - suspects).pose
     best[~_determined(robot.inverse_jacobian(best), 1.0 - suspects)] = np.nan
@@ -171,10 +175,11 @@ def check_encoders(robot: Mechanism, joints: Array, fit: BestFit, starts: Array,
 def _determined(j_m: Array, weights: Array) -> Array:
     """(...,) whether the joints that weigh fix every freedom: rank n of their rows, columns scaled to one."""
     rows = j_m * np.sqrt(weights)[..., None]
-    good = np.isfinite(rows).all(axis=(-2, -1))
+    good = np.asarray(np.isfinite(rows).all(axis=(-2, -1)))
     scaled = rows[good] / np.linalg.norm(rows[good], axis=-2, keepdims=True)
-    good[good] = np.linalg.svd(scaled, compute_uv=False)[..., -1] > _FREE
-    return good
+    determined = np.zeros_like(good)
+    determined[good] = np.linalg.svd(scaled, compute_uv=False)[..., -1] > _FREE
+    return determined
 
 
 def _worst(residuals: Array) -> Array:

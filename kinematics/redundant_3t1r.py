@@ -11,7 +11,6 @@ other direction would be turned with the platform at one end and not at the othe
 
 from __future__ import annotations
 
-from functools import cache
 from types import SimpleNamespace
 from typing import ClassVar, NamedTuple
 
@@ -20,15 +19,15 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from kinematics.bodies import Bodies
-from kinematics.clearance import segment_distances
 from kinematics.errors import InvalidShape
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.linear import volume
-from kinematics.mechanism import Array, Build
+from kinematics.mechanism import Array
 from kinematics.model import Model
 from kinematics.redundancy import BestFit, EncoderCheck, check_encoders, least_squares
-from kinematics.redundant_3t1r_forward import CANDIDATES, candidate_poses
+from kinematics.redundant_3t1r_clearance import arm_distances, arm_distances_symbolic
+from kinematics.redundant_3t1r_forward import candidate_build
 from kinematics.redundant_3t1r_geometry import Redundant3T1RGeometry, Redundant3T1RInertia
 from kinematics.rods import RodLevel
 
@@ -39,8 +38,6 @@ _SIDE = (1, -1, 1, -1, 1, -1)  # y_1 = y_5 = -y_2 = -y_6, y_3 = -y_4
 _FLOOR = (1, 1, 0, 0, -1, -1)  # z_1 = z_2 = -z_5 = -z_6, z_3 = z_4 = 0
 _PARALLELOGRAMS = (2, 3)
 _OUTER = (0, 1, 4, 5)
-# Arms that meet at a platform point have no distance to keep.
-_APART = tuple((i, j) for i in range(_LIMBS) for j in range(i + 1, _LIMBS) if i // 2 != j // 2)
 _ROUNDING = 1e-9  # by how much rounding may break (21) [m]
 
 
@@ -68,6 +65,7 @@ class Redundant3T1R(RodLevel):
     joint_names = ("x1", "x2", "x3", "x4", "x5", "x6")
     joint_units = ("m",) * _LIMBS
     rotations = (3,)
+    margins = (*RodLevel.margins, "clearance")
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.0, 0.0)
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=1.0, speed=0.5, force=0.5)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta")
@@ -214,13 +212,15 @@ class Redundant3T1R(RodLevel):
         rails, platform = self._evaluate(
             "arms", lambda m: [m.at_pose(self.rail_points(m.joints, m.g)), self.platform_points(m.pose, m.g)], pose
         )
-        ends = np.moveaxis(np.stack([rails, platform], axis=-1), (-2, -1), (0, -2))  # (6, ..., 2, 3)
-        half = np.array([0.0, 0.0, self.geometry.parallelogram_width / 2])
-        lines = [(e - half, e + half) if i in _PARALLELOGRAMS and rods else (e,) for i, e in enumerate(ends)]
-        return {
-            (i + 1, j + 1): np.min([segment_distances(one, two) for one in lines[i] for two in lines[j]], axis=0)
-            for i, j in _APART
-        }
+        return arm_distances(rails, platform, self.geometry.parallelogram_width if rods else 0.0)
+
+    def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
+        """Adds clearance [m]: the `arm_distances` between the arms' middle lines."""
+        if name == "clearance":
+            model = self.model()
+            rails, platform = self.rail_points(model.joints, model.g), self.platform_points(model.pose, model.g)
+            return arm_distances_symbolic(model.at_pose(rails), platform)
+        return super().margin_components(name, bounds, characteristic_length)
 
     def arm_clearance(self, pose: Array, rods: bool = False) -> Array:
         """(...,) the smallest of `arm_distances` [m]; the arms' thickness is still to be taken off."""
@@ -230,7 +230,7 @@ class Redundant3T1R(RodLevel):
 
     def _candidates(self, joints: Array) -> tuple[Array, Array, Array]:
         """S_1 to S_4 (..., 4, 4), worst error of a length (..., 4) and smallest x_bi - x_i (..., 4), both in metres."""
-        poses, errors, ahead = evaluate(self.program("candidates", lambda _: _candidate_build()), joints)
+        poses, errors, ahead = evaluate(self.program("candidates", lambda _: candidate_build(type(self))), joints)
         return poses, errors, ahead
 
     def forward(self, joints: Array, tolerance: float = 1e-6) -> Array:
@@ -288,19 +288,14 @@ class Redundant3T1R(RodLevel):
         Encoders 3 and 4 can never be told apart: the outer arms alone place B_1, which leaves one equation more than
         the angle needs, and either of the two may be the one that is wrong.
 
+        With the default geometry and theta within ±90° a fault of encoder 1, 2, 5 or 6 is seen from 2.5 times the
+        accuracy on at the median of reachable poses, from 6 times on at every one tried; one of 3 or 4 from 4 times on
+        at the median, 25 times at 95 % of them, and not at all where its arm is level with the turn.
+
         Args:
             joints: (..., 6) measured.
-            accuracy: of a sound encoder [m].
+            accuracy: the largest residual that sound encoders leave in a best fit [m].
         """
         joints = self._joints(joints)
         starts = self._home_near(joints)[..., None, :] + np.outer([-1.2, 0.0, 1.2], np.eye(4)[3])
         return check_encoders(self, joints, self.forward_least_squares(joints), starts, accuracy)
-
-
-@cache
-def _candidate_build() -> Build:
-    model, cls = Redundant3T1R.model(), Redundant3T1R
-    poses, ahead, excess = candidate_poses(model.joints, model.g)
-    gaps = [ca.vertcat(cls.closure(poses[:, k], model.joints, model.g), excess[k]) for k in range(CANDIDATES)]
-    errors = ca.vertcat(*(ca.mmax(ca.fabs(gap)) for gap in gaps))
-    return [model.joints], [poses.T, errors, ca.vertcat(*(ca.mmin(ahead[:, k]) for k in range(CANDIDATES)))]

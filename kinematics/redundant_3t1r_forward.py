@@ -10,11 +10,23 @@ B_1 is the intersection of regular spheres wherever all arms reach: n_1 . (n_2 x
 
 from __future__ import annotations
 
+from functools import cache
 from types import SimpleNamespace
 
 import casadi as ca
 
-CANDIDATES = 4
+from kinematics.mechanism import Build, Mechanism
+
+
+@cache
+def candidate_build(robot: type[Mechanism]) -> Build:
+    """From the joints: the poses (4, 4), one a row; each one's worst error of a length (4,); least x_bi - x_i (4,)."""
+    model = robot.model()
+    poses, ahead, excess = candidate_poses(model.joints, model.g)
+    columns = range(poses.shape[1])
+    gaps = [ca.vertcat(robot.closure(poses[:, k], model.joints, model.g), excess[k]) for k in columns]
+    errors = ca.vertcat(*(ca.mmax(ca.fabs(gap)) for gap in gaps))
+    return [model.joints], [poses.T, errors, ca.vertcat(*(ca.mmin(ahead[:, k]) for k in columns))]
 
 
 def candidate_poses(joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX, ca.SX]:

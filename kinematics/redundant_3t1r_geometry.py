@@ -6,14 +6,17 @@ from dataclasses import dataclass
 
 from kinematics.geometry import GeometryRecord, length
 
+_LEAST_SPREAD = 1e-4  # of rails, over the arms' length: the forward model loses as many digits as this has zeros
+
 
 @dataclass(frozen=True)
 class Redundant3T1RGeometry(GeometryRecord):
     """The optimised parameters of section V.D, in metres.
 
     Raises:
-        InvalidGeometry: also where rails coincide (y_1 = 0 or y_3 = 0), or where z_1 = a/2: then every arm is level at
-            z = 0 and nothing holds the platform's height there.
+        InvalidGeometry: also where |y_1| or |z_1 - a/2| is below 1e-4 L_1, or |y_3| below 1e-4 L_3. At 0 rails coincide
+            (y) or all arms are level at z = 0 and nothing holds the platform's height there (z_1 = a/2); near it the
+            forward model, which divides by them, errs by some 3e-15 m times the arms' length over them.
     """
 
     outer_arm_length: float = length(1.25, doc="L1, arms 1, 2, 5 and 6")
@@ -27,11 +30,13 @@ class Redundant3T1RGeometry(GeometryRecord):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for name in ("outer_rail_y", "middle_rail_y"):
-            if getattr(self, name) == 0.0:
-                raise self._invalid(name, 0.0, "other than 0 m, or two rails coincide")
-        if self.outer_rail_z == self.platform_height / 2:
-            raise self._invalid("outer_rail_z", self.outer_rail_z, "other than platform_height / 2")
+        outer, middle = _LEAST_SPREAD * self.outer_arm_length, _LEAST_SPREAD * self.middle_arm_length
+        for name, least in (("outer_rail_y", outer), ("middle_rail_y", middle)):
+            if abs(getattr(self, name)) < least:
+                raise self._invalid(name, getattr(self, name), f"{least:g} m or more from 0, or two rails coincide")
+        if abs(self.outer_rail_z - self.platform_height / 2) < outer:
+            why = f"{outer:g} m or more from platform_height / 2, or nothing holds the height at z = 0"
+            raise self._invalid("outer_rail_z", self.outer_rail_z, why)
 
 
 @dataclass(frozen=True)

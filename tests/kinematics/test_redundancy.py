@@ -147,6 +147,39 @@ def test_a_large_fault_is_never_cleared(size, named):
             assert (check.faulty == joint + 1).mean() >= named
 
 
+def test_the_smallest_fault_that_is_seen():
+    """In units of the accuracy; by the signatures, and by the check itself."""
+    poses = poses_of(3_000, seed=8)
+    v = fault_signatures(ROBOT, poses)
+    least = 1 / np.abs(v @ np.swapaxes(v, 1, 2)).max(axis=2)
+    assert np.abs(np.median(least, axis=0) - [2.5, 2.5, 3.8, 3.8, 2.5, 2.5]).max() < 0.2
+    assert least[:, [0, 1, 4, 5]].max() < 6
+    assert (np.quantile(least[:, 2:4], 0.95, axis=0) < 25).all()
+    assert (least[:, 2:4].max(axis=0) > 500).all()
+    for joint in range(6):
+        for size in (3e-6, 6e-6, 2.5e-5):
+            sharp = np.abs(least[:, joint] * 1e-6 / size - 1) > 0.01  # beyond first order
+            fit = ROBOT.forward_least_squares(ROBOT.inverse(poses) + size * np.eye(6)[joint])
+            seen = np.abs(fit.residuals).max(axis=1) > 1e-6
+            assert np.array_equal(seen[sharp], least[sharp, joint] * 1e-6 < size)
+
+
+def test_two_faults_break_the_assumption_and_at_few_poses_a_sound_encoder_is_named():
+    joints = faulty(faulty(ROBOT.inverse(poses_of(3_000, seed=7)), 0, seed=7), 2, seed=8)
+    named = ROBOT.check_encoders(joints).faulty
+    assert 0 < np.mean((named != 0) & (named != 1) & (named != 3)) < 0.01
+
+
+@pytest.mark.parametrize("lead", [(), (0,), (2, 3)])
+def test_encoders_are_checked_in_arrays_of_any_shape(lead):
+    poses = np.broadcast_to([0.1, 0.05, 0.2, 0.3], (*lead, 4))
+    check = ROBOT.check_encoders(ROBOT.inverse(poses) + 1e-3 * np.eye(6)[0])
+    assert [v.shape for v in check] == [(*lead, 4), (*lead, 6), lead, (*lead, 6)]
+    assert check.faulty.shape == lead
+    assert (check.faulty == 1).all()
+    assert np.abs(check.pose - poses).max(initial=0.0) < 1e-12
+
+
 def test_two_faults_accuse_nobody_alone():
     joints = faulty(faulty(ROBOT.inverse(poses_of(1_000, seed=7)), 0, seed=7), 5, seed=8)
     check = ROBOT.check_encoders(joints)

@@ -1,13 +1,14 @@
 """Rod by rod: the parallelograms must hold the platform upright; and how near the arms come to each other."""
 
+import casadi as ca
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import brentq, lsq_linear, minimize
 
 from kinematics import Redundant3T1R
-from kinematics.clearance import segment_distances
+from kinematics.clearance import segment_distance_symbolic, segment_distances
 from tests.kinematics.redundant_by_hand import NINE_ANGLES, ByHand, box, poses_at, quarter, random_geometry, reachable
 
 LIMBS = [0, 1, 2, 2, 3, 3, 4, 5]
@@ -183,6 +184,49 @@ def test_arm_distances_are_those_of_segments_by_hand(robot):
             assert np.isclose(found[k], nearest_by_search(one, two), atol=1e-8)
     assert np.array_equal(robot.arm_clearance(poses), np.min(list(distances.values()), axis=0))
     assert np.isnan(robot.arm_clearance(np.array([0.0, 0, 3, 0])))
+
+
+def symbolic_distance():
+    one, two = ca.SX.sym("one", 3, 2), ca.SX.sym("two", 3, 2)
+    return ca.Function("distance", [one, two], [segment_distance_symbolic(one, two)])
+
+
+SYMBOLIC = symbolic_distance()
+
+
+@given(point, point, point, point)
+def test_the_symbolic_segment_distance_is_the_numeric_one(a, b, c, d):
+    assume(a != b and c != d)
+    one, two = np.array([a, b]), np.array([c, d])
+    assert np.isclose(float(SYMBOLIC(one.T, two.T)), segment_distances(one, two), rtol=0, atol=1e-12)
+
+
+def test_the_clearance_margin_is_the_arms_clearance():
+    rng = np.random.default_rng(16)
+    for geometry in (None, *(random_geometry(rng) for _ in range(20))):
+        other = Redundant3T1R(geometry)
+        poses = np.vstack([box(20_000, seed=17, y=0.6, z=0.8), [[0.0, 0, 3, 0]]])
+        margin, clearance = other.margin("clearance", poses), other.arm_clearance(poses)
+        assert (np.isnan(margin) == np.isnan(clearance)).all()
+        assert np.isnan(margin[-1])
+        good = ~np.isnan(margin)
+        assert good.sum() > 1_000
+        assert np.abs(margin - clearance)[good].max() < 1e-9
+
+
+def test_the_clearance_margin_has_the_slopes_of_central_differences(robot):
+    model = robot.model()
+    components = robot.margin_components("clearance", robot.fvi_bounds, robot.characteristic_length)
+    slopes = ca.Function("slopes", [model.pose, model.geometry], [components, ca.jacobian(components, model.pose)])
+
+    def at(pose):
+        return [v.full() for v in slopes(pose, robot.geometry.vector())]
+
+    for pose in reachable(robot, box(30, seed=18), margin=0.05):
+        (values, found), h = at(pose), 1e-6
+        numeric = np.hstack([(at(pose + h * e)[0] - at(pose - h * e)[0]) / (2 * h) for e in np.eye(4)])
+        smooth = values[:, 0] > 0.01
+        assert np.abs(found - numeric)[smooth].max() < 1e-5
 
 
 def test_the_real_rods_of_the_parallelograms_are_half_a_width_off_the_axis(robot):
