@@ -68,7 +68,7 @@ def cosines_and_sines(pose: ca.SX, elbows: tuple[int, int], g: SimpleNamespace) 
 
 
 def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-    """(2,) how far |q_i| is inside [|r_i - l_i|, r_i + l_i] [m]; NaN where r_i = l_i and q_i = 0, as any theta_i closes."""
+    """(2,) how far |q_i| is inside [|r_i - l_i|, r_i + l_i] [m]; NaN where any theta_i closes."""
     q = target(pose, g)
     square = q.along_x**2 + q.along_y**2
     distance, near, far = ca.sqrt(square), g.proximal_lengths, g.distal_lengths
