@@ -25,6 +25,7 @@ from kinematics.model import Model
 from kinematics.polynomial import real_roots
 from kinematics.rods import RodLevel
 from kinematics.rotary_limbs import Limbs, RotaryLimbs, columns, radial_directions
+from kinematics.twins import twins_of_halves
 
 _UPPER = (0.0, 0.0, 1.0, 1.0)  # which limbs hold the plate that rides on the screw: (7), (8)
 _DEG = math.pi / 180.0
@@ -33,7 +34,11 @@ _E_Z = ca.DM([0, 0, 1])
 
 @dataclass(frozen=True)
 class Heli4Geometry(GeometryRecord):
-    """Table 1 of the paper, in metres and radians."""
+    """Table 1 of the paper, in metres and radians.
+
+    Raises:
+        InvalidGeometry: besides what any geometry refuses: both limbs of a plate have the same azimuth.
+    """
 
     base_radius: float = length(0.350, doc="R, of the actuators' axes")
     platform_radius: float = length(0.041, doc="r, of the plates")
@@ -44,6 +49,12 @@ class Heli4Geometry(GeometryRecord):
     pitch: float = screw_pitch(0.050, doc="p, of the screw")
     azimuths: tuple[float, ...] = angle((0.0, 180 * _DEG, 90 * _DEG, 270 * _DEG), doc="alpha, of the limbs")
     parallelogram_width: float = length(0.1, doc="d, between the two rods of a limb; not in the paper")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if pair := twins_of_halves(np.array(self.azimuths)):
+            reason = f"limbs {pair[0]} and {pair[1]} are one, det J_x is zero in every pose"
+            raise self._invalid("azimuths", self.azimuths, f"two directions a plate, modulo 2 pi: {reason}")
 
 
 @dataclass(frozen=True)

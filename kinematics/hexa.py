@@ -24,6 +24,7 @@ from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array, Build
 from kinematics.model import Model
 from kinematics.rotary_limbs import ArmInertia, Limbs, RotaryLimbs, columns, radial_directions
+from kinematics.twins import twins
 
 _AROUND = [*range(6), 0]
 _BASE = symmetric_points(0.28, TURN / 18, 0.0)
@@ -38,7 +39,7 @@ class HexaGeometry(GeometryRecord):
 
     Raises:
         InvalidGeometry: besides what any geometry refuses: the platform's points lie on one line, about which the
-            platform then turns freely.
+            platform then turns freely; or two limbs are one, with the same drive, arm and platform point.
     """
 
     base_points: tuple[tuple[float, ...], ...] = length(_BASE, minimum=None, doc="P_i, on the arms' axes")
@@ -57,6 +58,11 @@ class HexaGeometry(GeometryRecord):
         sizes = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
         if sizes[1] <= 1e-9 * sizes[0]:
             raise self._invalid("platform_points", self.platform_points, "points that are not on one line")
+        turned = self.arm_length * np.exp(1j * np.array(self.arm_azimuths))
+        limbs = np.column_stack([self.base_points, turned.real, turned.imag, points])
+        if pair := twins(limbs, np.abs(limbs).max()):
+            reason = f"limbs {pair[0]} and {pair[1]} share drive and arm too, det J_x is zero in every pose"
+            raise self._invalid("platform_points", self.platform_points, f"two points for two limbs: {reason}")
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ from kinematics.mechanism import Array, Build, Mechanism
 from kinematics.model import Model
 from kinematics.par4_forward import Halves, candidates
 from kinematics.rotary_limbs import ArmInertia, Limbs, RotaryLimbs, columns, radial_directions
+from kinematics.twins import twins_of_halves
 
 _DEG = math.pi / 180.0
 _HALF = (-1.0, -1.0, 1.0, 1.0)  # which end of the bars each limb holds
@@ -34,7 +35,11 @@ _HALF = (-1.0, -1.0, 1.0, 1.0)  # which end of the bars each limb holds
 
 @dataclass(frozen=True)
 class Par4Geometry(GeometryRecord):
-    """A robot of the Quattro's size: an assumption of this project, not a datasheet."""
+    """A robot of the Quattro's size: an assumption of this project, not a datasheet.
+
+    Raises:
+        InvalidGeometry: besides what any geometry refuses: both limbs of a half have the same azimuth.
+    """
 
     base_radius: float = length(0.275, doc="R, of the actuators' axes")
     platform_radius: float = length(0.100, doc="r, of the rods' ends about the tool point at theta = 0")
@@ -44,6 +49,12 @@ class Par4Geometry(GeometryRecord):
     bar_length: float = length(0.100, doc="b, of the bars between the halves")
     bar_angle: float = angle(-90 * _DEG, doc="delta, azimuth of the bars from half 1 to half 2 at theta = 0")
     amplification: float = ratio(4.0, doc="k, turns of the tool a turn of the bars; 1 without a gear")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if pair := twins_of_halves(np.array(self.azimuths)):
+            reason = f"limbs {pair[0]} and {pair[1]} are one, det J_x is zero in every pose"
+            raise self._invalid("azimuths", self.azimuths, f"two directions a half, modulo 2 pi: {reason}")
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,9 @@ from kinematics.mechanism import Array, Mechanism
 from kinematics.model import Model
 
 _E_Z = ca.DM([0, 0, 1])
-_SAME_PITCH = 1e-12  # pitches that differ by less than this part of the larger are one pitch and a rounding
+# Of the larger pitch. A rounding of a nut's height [m] turns theta by 2 pi / |p_1 - p_2| times as much [rad]: at this
+# difference theta is known to some 1e-8 rad, at 1e-11 it would be to 1e-3.
+_SAME_PITCH = 1e-6
 
 
 @dataclass(frozen=True)
@@ -34,7 +36,7 @@ class PeppermillGeometry(GeometryRecord):
     """The paper gives no dimensions: these serve a 0.4 x 0.4 x 0.1 m box about the origin with a turn either way.
 
     Raises:
-        InvalidGeometry: also where the two pitches are equal, the architecture singularity of (48).
+        InvalidGeometry: also where the two pitches are equal to a millionth, the architecture singularity of (48).
     """
 
     proximal_lengths: tuple[float, ...] = length((0.20, 0.20), doc="r_i, drive axis to elbow")

@@ -17,13 +17,15 @@ import numpy as np
 from kinematics.bodies import Bodies
 from kinematics.distinct import distinct
 from kinematics.errors import InvalidShape
-from kinematics.geometry import TURN, GeometryRecord, length
+from kinematics.geometry import TURN, GeometryRecord, Points, length
 from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array, Build, Mechanism
 from kinematics.model import Model
 from kinematics.planar_forward import placements, rods_and_determinant
+from kinematics.twins import ALIKE, twins
 
 _AROUND = [0, 1, 2, 0]
+_FAR = 1e60  # [m] or [rad], its fifth power still a double
 AZIMUTHS = (-TURN / 4, TURN / 12, 5 * TURN / 12)
 
 
@@ -38,7 +40,7 @@ class PlanarGeometry(GeometryRecord):
     """Joint centres; the dimensions are assumptions of this project, as the chapter gives none.
 
     Raises:
-        InvalidGeometry: besides what any geometry refuses: the platform points coincide.
+        InvalidGeometry: besides what any geometry refuses: the platform points coincide; two legs are one.
     """
 
     base_points: tuple[tuple[float, ...], ...] = length(triangle(0.5), minimum=None, doc="A_i, legs' base joints")
@@ -48,8 +50,23 @@ class PlanarGeometry(GeometryRecord):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if np.ptp(np.array(self.platform_points), axis=0).max() == 0.0:
-            raise self._invalid("platform_points", self.platform_points, "points that do not all coincide")
+        if self._coincide(self.platform_points):
+            reason = "about a common one the platform turns freely"
+            raise self._invalid("platform_points", self.platform_points, f"points that do not all coincide: {reason}")
+        legs = np.column_stack([*self._drives(), self.platform_points])
+        if pair := twins(legs, self._size()):
+            reason = f"legs {pair[0]} and {pair[1]} share the drive too, det J_x is zero in every pose"
+            raise self._invalid("platform_points", self.platform_points, f"two points for two legs: {reason}")
+
+    def _size(self) -> float:
+        return float(max(np.abs(self.base_points).max(), np.abs(self.platform_points).max()))
+
+    def _coincide(self, points: Points) -> bool:
+        return bool(np.ptp(np.array(points), axis=0).max() <= ALIKE * self._size())
+
+    def _drives(self) -> list[Array]:
+        """Columns (3,) or (3, k) in metres that are equal for two legs where their rods or links are, at any B_i."""
+        return [np.array(self.base_points)]
 
 
 @dataclass(frozen=True)
@@ -132,7 +149,7 @@ class Planar(Mechanism):
             centres, radii = self.circles(model.joints, model.g)
             return [model.joints], [centres[0, :].T, centres[1, :].T, radii + 0 * model.joints]
 
-        x, y, radii = evaluate(self.program("circles", build), joints)
+        x, y, radii = evaluate(self.program("circles", build), _bounded(joints))
         return x + 1j * y, radii, np.array(self.geometry.platform_points) @ [1, 1j]
 
     def forward(self, joints: Array, near: Array | None = None) -> Array:
@@ -145,7 +162,7 @@ class Planar(Mechanism):
             near: (3,) a pose, `home` if not given.
         """
         joints = self._joints(joints)
-        wanted = self._poses(np.array(self.home if near is None else near))
+        wanted = _bounded(self._poses(np.array(self.home if near is None else near)))
         if wanted.shape != (3,):
             raise InvalidShape("near, one pose", self.pose_names, wanted.shape)
         centres, radii, points = self._problem(joints.reshape(-1, 3))
@@ -180,6 +197,11 @@ class Planar(Mechanism):
         kept = distinct(apart, det / (length * np.prod(radii) + 1e-300))
         away = np.abs(p - complex(*self.home[:2])) / length + np.abs(turn - np.exp(1j * self.home[2]))
         return _poses(p, theta)[sorted(kept, key=lambda i: away[i])]
+
+
+def _bounded(rows: Array) -> Array:
+    """(..., 3) with NaN in place of rows that are infinite, or so large that squares and products would overflow."""
+    return np.where((np.abs(rows) < _FAR).all(axis=-1, keepdims=True), rows, np.nan)
 
 
 def _poses(p: Array, theta: Array) -> Array:

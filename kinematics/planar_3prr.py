@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 
 import casadi as ca
+import numpy as np
 
 from kinematics.bodies import Bodies
 from kinematics.geometry import TURN, angle, length
 from kinematics.indices import FviBounds
+from kinematics.mechanism import Array
 from kinematics.planar import AZIMUTHS, Planar, PlanarGeometry, PlanarInertia
 from kinematics.rotary_limbs import radial_directions
 
@@ -20,6 +22,12 @@ class Planar3PRRGeometry(PlanarGeometry):
 
     rod_lengths: tuple[float, ...] = length((0.55,) * 3, doc="l_i, slider to platform")
     rail_angles: tuple[float, ...] = angle(tuple(a + TURN / 4 for a in AZIMUTHS), doc="of the rails, from x")
+
+    def _drives(self) -> list[Array]:
+        """Where each rail runs, by its distance from the origin and its direction; and the rod."""
+        ahead = np.exp(1j * np.array(self.rail_angles))
+        aside = (ahead.conj() * (np.array(self.base_points) @ [1, 1j])).imag
+        return [aside, self._size() * ahead.real, self._size() * ahead.imag, np.array(self.rod_lengths)]
 
 
 class Planar3PRR(Planar):

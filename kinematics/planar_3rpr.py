@@ -15,11 +15,21 @@ from kinematics.planar import Planar, PlanarGeometry, PlanarInertia, triangle
 
 @dataclass(frozen=True)
 class Planar3RPRGeometry(PlanarGeometry):
-    """With the platform a quarter turn ahead: similar triangles side by side would make home singular."""
+    """With the platform a quarter turn ahead: similar triangles side by side would make home singular.
+
+    Raises:
+        InvalidGeometry: besides what any planar robot refuses: the base points coincide.
+    """
 
     platform_points: tuple[tuple[float, ...], ...] = length(
         triangle(0.15, TURN / 4), minimum=None, doc="B_i, in the platform's frame"
     )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self._coincide(self.base_points):
+            reason = "about a common one the robot turns freely"
+            raise self._invalid("base_points", self.base_points, f"points that do not all coincide: {reason}")
 
 
 class Planar3RPR(Planar):
@@ -43,7 +53,7 @@ class Planar3RPR(Planar):
 
     @staticmethod
     def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """Unique, as a length is positive."""
+        """Unique, as a length is positive; inf where the pose is infinite or a length's square overflows."""
         legs = Planar.platform_points(pose, g) - Planar.base_points(g)
         return ca.sqrt(ca.sum1(legs * legs)).T
 

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 
 import casadi as ca
+import numpy as np
 
 from kinematics.bodies import Bodies
 from kinematics.geometry import angle, length
 from kinematics.indices import FviBounds
+from kinematics.mechanism import Array
 from kinematics.planar import AZIMUTHS, Planar, PlanarGeometry, PlanarInertia
 from kinematics.rotary_limbs import Limbs, RotaryLimbs, radial_directions
 
@@ -21,6 +23,10 @@ class Planar3RRRGeometry(PlanarGeometry):
     arm_lengths: tuple[float, ...] = length((0.30,) * 3, doc="L_i, drive to elbow")
     rod_lengths: tuple[float, ...] = length((0.35,) * 3, doc="l_i, elbow to platform")
     zero_angles: tuple[float, ...] = angle(AZIMUTHS, doc="of the arms at q_i = 0, from x")
+
+    def _drives(self) -> list[Array]:
+        """Base joint, arm and rod; where an arm is counted from makes no other leg."""
+        return [np.array(self.base_points), np.array(self.arm_lengths), np.array(self.rod_lengths)]
 
 
 @dataclass(frozen=True)

@@ -64,4 +64,36 @@ def test_degenerate_geometry_is_refused_by_field(change, field):
 def test_equal_pitches_are_refused_as_what_they_are():
     with pytest.raises(InvalidGeometry, match="architecture singularity"):
         Peppermill.Geometry(pitches=(0.1, 0.1))
-    Peppermill.Geometry(pitches=(0.1, 0.1 + 1e-6))  # poor, but not singular
+    with pytest.raises(InvalidGeometry, match="architecture singularity"):
+        Peppermill.Geometry(pitches=(0.1, 0.1 * (1 - 0.9e-6)))
+    Peppermill.Geometry(pitches=(0.1, 0.1 * (1 - 1.1e-6)))  # poor, but not singular
+
+
+def test_the_closest_pitches_return_the_nuts_to_rounding_and_the_turn_to_what_rounding_becomes():
+    robot = Peppermill(Peppermill.Geometry(pitches=(0.1, 0.1 * (1 - 1.1e-6))))
+    rng = np.random.default_rng(11)
+    poses = rng.uniform([-0.1, -0.1, -0.05, -1.0], [0.1, 0.1, 0.05, 1.0], (10_000, 4))
+    error = np.abs(robot.forward(robot.inverse(poses)) - poses).max(axis=0)
+    assert error[:3].max() < 1e-9
+    nuts = 4 * np.finfo(float).eps * robot.geometry.half_distance  # [m], a few roundings of a nut's height
+    assert error[3] < nuts * 2 * np.pi / 1.1e-7  # 2.6e-8 rad: no forward model can know theta better from doubles
+    assert error[3] > 1e-9
+
+
+def test_equal_links_folded_onto_the_drive_axis_have_no_angle():
+    robot = Peppermill(Peppermill.Geometry(proximal_lengths=(0.4, 0.4), distal_lengths=(0.4, 0.4)))
+    g = robot.geometry
+    folded = np.array([0.0, 0.0, g.half_distance, 0.0])  # nut 2 is on drive axis 2 or nut 1 on drive axis 1
+    poses = np.array([folded, -folded, folded - np.array([0, 0, 0.45, 0])])
+    free = poses[:2]
+    gap = np.abs([robot.closure_residual(free, np.array([0.0, 0.0, a, 2 * a])) for a in (0.3, 1.0, 2.0)])
+    assert (gap.min(axis=-1) < 1e-15).all()  # one limb closes at any angle
+    joints = robot.inverse(poses)
+    assert np.isnan(joints).tolist() == [[True] * 4] * 2 + [[False] * 4]
+    assert np.isnan(robot.inverse_modes(free)).all()
+    assert np.isnan(robot.margin("reach", free)).all()
+    assert robot.margin("reach", poses[2]) > 0.0
+    with pytest.raises(UnreachablePose):
+        robot.require_reachable(free[0])
+    unequal = Peppermill(Peppermill.Geometry(proximal_lengths=(0.3, 0.3), distal_lengths=(0.4, 0.4)))
+    assert unequal.margin("reach", folded) == pytest.approx(-0.3)  # the other nut is 1 m away, links of 0.7 m
