@@ -200,26 +200,24 @@ class Redundant3T1R(RodLevel):
         lines["platform"] = ca.horzcat(platform[:, 0], middle, platform[:, 2], middle, platform[:, 4])
         return lines
 
+    @classmethod
+    def _arm_ends(cls, m: Model) -> list[ca.SX]:
+        """A_i and B_i (3, 6) at a pose."""
+        return [m.at_pose(cls.rail_points(m.joints, m.g)), cls.platform_points(m.pose, m.g)]
+
     def arm_distances(self, pose: Array, rods: bool = False) -> dict[tuple[int, int], Array]:
-        """Distance between the axes of every two arms that do not share a platform point.
+        """{(i, j): (...,) metres} between the axes of arms, from 1, that share no platform point; NaN out of reach.
 
         Args:
             rods: take arms 3 and 4 as the two rods that they are, not as the middle line A_i B_i.
-
-        Returns:
-            {(i, j): (...,) metres}, arms counted from 1; NaN out of reach.
         """
-        rails, platform = self._evaluate(
-            "arms", lambda m: [m.at_pose(self.rail_points(m.joints, m.g)), self.platform_points(m.pose, m.g)], pose
-        )
+        rails, platform = self._evaluate("arms", self._arm_ends, pose)
         return arm_distances(rails, platform, self.geometry.parallelogram_width if rods else 0.0)
 
     def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
         """Adds clearance [m]: the `arm_distances` between the arms' middle lines."""
         if name == "clearance":
-            model = self.model()
-            rails, platform = self.rail_points(model.joints, model.g), self.platform_points(model.pose, model.g)
-            return arm_distances_symbolic(model.at_pose(rails), platform)
+            return arm_distances_symbolic(*self._arm_ends(self.model()))
         return super().margin_components(name, bounds, characteristic_length)
 
     def arm_clearance(self, pose: Array, rods: bool = False) -> Array:
