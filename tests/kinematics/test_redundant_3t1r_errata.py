@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinematics import Redundant3T1R
-from tests.kinematics.redundant_by_hand import NINE_ANGLES, OUTER, ByHand, box, poses_at, quarter, reachable
+from tests.kinematics.redundant_by_hand import LEVELS, NINE_ANGLES, OUTER, ByHand, box, poses_at, quarter, reachable
 
 E_Z = np.array([0.0, 0, 1])
 
@@ -70,7 +70,8 @@ def test_38_it_is_n1_n2_n5_n6_that_span_space(poses):
     """Only these are the rows of M, (37): with z_1 -> a/2 they lose rank at z = 0, the printed set does not notice."""
     hand = ByHand()
     assert (np.linalg.svd(hand.directions(poses)[:, OUTER])[1][:, 2] > 0.1).all()
-    flat = ByHand(Redundant3T1R.Geometry(outer_rail_z=0.1 + 1e-9))
+    flat = ByHand()
+    flat.z = LEVELS * (0.1 + 1e-9)
     pose = np.array([0.0, 0.05, 0.0, 0.4])
     n = flat.directions(pose)
     assert np.linalg.svd(n[OUTER])[1][2] < 1e-8

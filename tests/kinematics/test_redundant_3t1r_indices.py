@@ -129,7 +129,9 @@ def test_true_force_capability_is_never_below_the_minimum_norm_one():
 
 def test_force_capability_is_nan_out_of_reach_and_zero_on_a_singularity():
     assert np.isnan(ROBOT.force_capability(np.array([0.0, 0, 3, 0])))
-    flat = Redundant3T1R(Redundant3T1R.Geometry(outer_rail_z=0.1 + 1e-13))
+    geometry = Redundant3T1R.Geometry()
+    object.__setattr__(geometry, "outer_rail_z", 0.1 + 1e-13)  # a geometry that the constructor refuses
+    flat = Redundant3T1R(geometry)
     assert flat.force_capability(np.array([0.0, 0.05, 0, 0.4])) < 1e-10
 
 
