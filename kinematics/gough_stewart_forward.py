@@ -23,7 +23,7 @@ Array = np.ndarray
 
 _ROUNDING = 1e-14  # leg error, relative to the sizes involved, that is not worth another step
 _REAL = 1e-2  # imaginary part of a unit point below which a real pose may lie near
-_SURELY_REAL = 1e-10  # and below which one lies there: a conjugate pair is never so close and yet apart
+_SURELY_REAL = 4e-7  # and below which one lies there: a conjugate pair so close would not have been certified
 _LONGEST_TURN = 0.5  # rotation of one step [rad], and its translation over the mean leg length
 
 
