@@ -43,14 +43,11 @@ def setpoints_text(setpoints: Setpoints) -> str:
         InvalidValue: a set-point is not finite.
         ValueError: the header holds a number that is not finite.
     """
-    table = setpoints.table()
-    if not np.isfinite(table).all():
-        row, column = (int(k) for k in np.argwhere(~np.isfinite(table))[0])
-        raise InvalidValue(f"set-point {row}, {setpoints.columns[column]}", table[row, column], "a finite number")
+    setpoints.require_finite()
     header = {**setpoints.header, "joints": list(setpoints.joint_names), "units": list(setpoints.units)}
     lines = [f"# {FORMAT}", *(f"# {name}: {json.dumps(value, allow_nan=False)}" for name, value in header.items())]
     lines.append(",".join(setpoints.columns))
-    lines.extend(",".join(map(repr, row)) for row in table.tolist())
+    lines.extend(",".join(map(repr, row)) for row in setpoints.table().tolist())
     return "\n".join(lines) + "\n"
 
 

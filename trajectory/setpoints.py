@@ -91,6 +91,17 @@ class Setpoints:
             time[:, 0], pose, joints, speed, acceleration, torque, tuple(joint_names), tuple(joint_units), dict(header)
         )
 
+    def require_finite(self) -> None:
+        """Check that every number is finite.
+
+        Raises:
+            InvalidValue: naming the set-point and its column.
+        """
+        table = self.table()
+        if not np.isfinite(table).all():
+            row, column = (int(k) for k in np.argwhere(~np.isfinite(table))[0])
+            raise InvalidValue(f"set-point {row}, {self.columns[column]}", table[row, column], "a finite number")
+
     def require_consistent(self, robot: Mechanism) -> None:
         """Check that these set-points are for this robot: its geometry, and joints that belong to the poses.
 

@@ -1,0 +1,76 @@
+"""What a drive file must know of the drives beyond the set-points: data of the machine, not of the motion."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinematics import InvalidValue
+from trajectory.path import Array
+
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_ ./-]*")
+
+
+@dataclass(frozen=True)
+class Drive:
+    """Names and encoders of the axes, in the order of the set-points' actuators.
+
+    Attributes:
+        axes: (m,) names; each format's own where None.
+        increments: of the encoder: in a turn of the motor where the actuator counts in rad, in a metre where in m; one
+            number or one an axis. None where no format needs it.
+        gear: turns of the motor for one of the actuator, (metres for a metre on a rail); negative where the motor
+            turns the other way; one number or one an axis.
+
+    Raises:
+        InvalidValue: a value that no drive can have; the field is named.
+    """
+
+    axes: tuple[str, ...] | None = None
+    increments: int | tuple[int, ...] | None = None
+    gear: float | tuple[float, ...] = 1.0
+
+    def __post_init__(self) -> None:
+        if self.axes is not None:
+            object.__setattr__(self, "axes", tuple(self.axes))
+            if len(set(self.axes)) != len(self.axes) or not all(_NAME.fullmatch(name) for name in self.axes):
+                raise InvalidValue("Drive axes", self.axes, "different names of letters, digits and _ ./-")
+        increments = () if self.increments is None else _several(self.increments)
+        if not all(isinstance(n, int) and n > 0 for n in increments):
+            raise InvalidValue("Drive increments", self.increments, "whole numbers > 0")
+        if not all(math.isfinite(ratio) and ratio != 0 for ratio in _several(self.gear)):
+            raise InvalidValue("Drive gear", self.gear, "finite numbers other than 0")
+
+    def names(self, own: tuple[str, ...]) -> tuple[str, ...]:
+        """(m,) the axes' names; `own` are the format's.
+
+        Raises:
+            InvalidValue: another number of names than axes.
+        """
+        if self.axes is None:
+            return own
+        if len(self.axes) != len(own):
+            raise InvalidValue("Drive axes", self.axes, f"{len(own)} names, one an actuator")
+        return self.axes
+
+    def increments_per_unit(self, joint_units: tuple[str, ...]) -> Array:
+        """(m,) encoder increments for a radian or a metre of each actuator; negative where it turns the other way.
+
+        Raises:
+            InvalidValue: increments are not given, or for another number of axes.
+        """
+        if self.increments is None:
+            raise InvalidValue("Drive increments", None, "the encoder's, in a turn of the motor (in a metre on a rail)")
+        count = len(joint_units)
+        for name, value in (("increments", self.increments), ("gear", self.gear)):
+            if len(_several(value)) not in (1, count):
+                raise InvalidValue(f"Drive {name}", value, f"one number or {count}, one an actuator")
+        turns = np.array([2 * math.pi if unit == "rad" else 1.0 for unit in joint_units])
+        return np.asarray(self.increments) * np.asarray(self.gear) / turns
+
+
+def _several(value: float | tuple[float, ...]) -> tuple[float, ...]:
+    return tuple(value) if isinstance(value, tuple) else (value,)
