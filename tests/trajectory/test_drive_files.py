@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import struct
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import canopen
 import numpy as np
 import pytest
 import yaml
-from canopen.objectdictionary import INTEGER8, INTEGER32, UNSIGNED8, ODRecord, ODVariable
+from canopen.objectdictionary import INTEGER8, INTEGER32, UNSIGNED8, UNSIGNED32, ODRecord, ODVariable
 from rosbags.highlevel import AnyReader
 from zaber_motion import Units
 from zaber_motion.ascii import PvtSequence
@@ -111,33 +112,44 @@ def read_increments(text: str) -> tuple[dict[str, object], list[str], np.ndarray
     return {name: json.loads(value) for name, value in header.items()}, rows[0].split(","), table
 
 
-def csp_dictionary(axes: int) -> canopen.ObjectDictionary:
-    """What a CSP drive has; one target position an axis, 0x800 apart, as CiA 402-1 says of multiple-axis devices."""
+def csp_pdo() -> tuple[canopen.ObjectDictionary, canopen.pdo.base.PdoMap]:
+    """Two CSP axes behind one receive PDO, their objects 0x800 apart (CiA 402-1, multiple-axis devices)."""
     dictionary = canopen.ObjectDictionary()
-    for axis in range(axes):
-        target = ODVariable(f"target position {axis}", 0x607A + 0x800 * axis)
+    for index in (0x607A, 0x687A):
+        target = ODVariable(f"target position {index:X}", index)
         target.data_type = INTEGER32
         dictionary.add_object(target)
-    period = ODRecord("interpolation time period", 0x60C2)
-    for subindex, kind in ((1, UNSIGNED8), (2, INTEGER8)):
-        member = ODVariable(f"part {subindex}", 0x60C2, subindex)
-        member.data_type = kind
-        period.add_member(member)
-    dictionary.add_object(period)
-    return dictionary
+    records = {
+        0x60C2: {1: UNSIGNED8, 2: INTEGER8},
+        0x1400: {0: UNSIGNED8, 1: UNSIGNED32, 2: UNSIGNED8},
+        0x1600: {0: UNSIGNED8, 1: UNSIGNED32, 2: UNSIGNED32},
+    }
+    for index, members in records.items():
+        record = ODRecord(f"{index:X}", index)
+        for subindex, kind in members.items():
+            member = ODVariable(f"{index:X} {subindex}", index, subindex)
+            member.data_type = kind
+            record.add_member(member)
+        dictionary.add_object(record)
+    pdo = canopen.RemoteNode(1, dictionary).rpdo[1]
+    for index in (0x607A, 0x687A):
+        pdo.add_variable(index)
+    return dictionary, pdo
 
 
-def test_increments_pass_through_a_drive_s_object_dictionary(setpoints: Setpoints) -> None:
+def test_increments_pass_through_a_drive_s_process_data(setpoints: Setpoints) -> None:
     header, columns, table = read_increments(one(setpoints, "cia402"))
     assert columns == [f"{name} 0x607A" for name in setpoints.joint_names]
     assert table.shape == setpoints.joints.shape
-    dictionary = csp_dictionary(4)
+    dictionary, pdo = csp_pdo()
     turns = np.array([2 * math.pi if unit == "rad" else 1.0 for unit in setpoints.joint_units])
     for axis in range(4):
-        target = dictionary[0x607A + 0x800 * axis]
-        raw = [target.encode_raw(int(v)) for v in table[:, axis]]
-        assert {len(v) for v in raw} == {4}
-        back = np.array([target.decode_raw(v) for v in raw]) * turns[axis] / (9.0 * 2**20)
+        back = []
+        for target in table[:, axis].tolist():
+            pdo[0].raw, pdo[1].raw = target, -target
+            assert struct.unpack("<ii", pdo.data) == (target, -target)
+            back.append(pdo[0].raw)
+        back = np.array(back) * turns[axis] / (9.0 * 2**20)
         rounding = header["rounding to increments [rad or m]"][axis]
         assert rounding == pytest.approx(turns[axis] / 9 / 2**21, rel=1e-12)
         assert np.abs(back - setpoints.joints[:, axis]).max() <= rounding * (1 + 1e-6)
