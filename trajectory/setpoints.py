@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from kinematics import InvalidShape, InvalidValue, Mechanism
 from kinematics.drives import from_actuators
 from trajectory.cycle import Cycle, Piece, periods_of
+from trajectory.interpolation import PARTS, between_setpoints, interpolants
 from trajectory.limits import Limits
 from trajectory.motion import Motion, motion_of
 from trajectory.path import POSE_NAMES, Array
@@ -141,13 +142,28 @@ def cycle_setpoints(cycle: Cycle, period: float, joint_units: Sequence[str]) -> 
         parts.append(np.concatenate([motion.tool.pose, *motion.joints[:3], motion.torque], axis=1))
     time = np.round(np.arange(sum(counts) + 1) * period, 12)
     table = np.concatenate([time[:, None], np.concatenate(parts)], axis=1)
-    return Setpoints.of_table(table, cycle.robot.actuator_names, joint_units, _header(cycle, whole, period, counts))
+    header = _header(cycle, whole, period, counts)
+    setpoints = Setpoints.of_table(table, cycle.robot.actuator_names, joint_units, header)
+    header["between set-points"] = _between(whole, counts, setpoints)
+    return replace(setpoints, header=header)
 
 
 def _sampled(cycle: Cycle, piece: Piece, count: int, last: bool) -> Motion:
     """Motion of a piece at its periods; its end is the next piece's start unless it is the last one."""
     times = np.linspace(0.0, piece.duration, count + 1)[: count + 1 if last else count]
     return motion_of(cycle.robot, piece.motion.at(times), piece.payload)
+
+
+def _between(cycle: Cycle, counts: Sequence[int], setpoints: Setpoints) -> dict[str, dict[str, float]]:
+    """What each interpolation of a drive would make of the set-points."""
+    parts = []
+    for piece, count in zip(cycle.pieces, counts, strict=True):
+        times = np.linspace(0.0, piece.duration, count * PARTS + 1)
+        rows = np.arange(count)[:, None] * PARTS + np.arange(PARTS + 1)
+        parts.append([v[rows] for v in motion_of(cycle.robot, piece.motion.at(times), piece.payload).joints[:3]])
+    exact = [np.concatenate(v) for v in zip(*parts, strict=True)]
+    curves = interpolants(setpoints.time, setpoints.joints, setpoints.speed, setpoints.acceleration)
+    return between_setpoints(curves, exact, setpoints.joint_units, cycle.limits)
 
 
 def robot_header(robot: Mechanism, limits: Limits) -> dict[str, Any]:
