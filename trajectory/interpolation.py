@@ -17,7 +17,7 @@ from scipy.interpolate import CubicHermiteSpline, PPoly
 from trajectory.limits import Limits
 from trajectory.path import Array
 
-PARTS = 20
+PARTS = 10
 
 
 def interpolants(time: Array, joints: Array, speed: Array, acceleration: Array) -> dict[str, PPoly]:

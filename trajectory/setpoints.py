@@ -11,6 +11,7 @@ import numpy as np
 
 from kinematics import InvalidShape, InvalidValue, Mechanism
 from kinematics.drives import from_actuators
+from kinematics.motion import actuator_motion
 from trajectory.cycle import Cycle, Piece, periods_of
 from trajectory.interpolation import PARTS, between_setpoints, interpolants
 from trajectory.limits import Limits
@@ -160,7 +161,7 @@ def _between(cycle: Cycle, counts: Sequence[int], setpoints: Setpoints) -> dict[
     for piece, count in zip(cycle.pieces, counts, strict=True):
         times = np.linspace(0.0, piece.duration, count * PARTS + 1)
         rows = np.arange(count)[:, None] * PARTS + np.arange(PARTS + 1)
-        parts.append([v[rows] for v in motion_of(cycle.robot, piece.motion.at(times), piece.payload).joints[:3]])
+        parts.append([v[rows] for v in actuator_motion(cycle.robot, *piece.motion.at(times))[:3]])
     exact = [np.concatenate(v) for v in zip(*parts, strict=True)]
     curves = interpolants(setpoints.time, setpoints.joints, setpoints.speed, setpoints.acceleration)
     return between_setpoints(curves, exact, setpoints.joint_units, cycle.limits)

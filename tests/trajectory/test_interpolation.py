@@ -27,7 +27,7 @@ def waves(t: np.ndarray) -> list[np.ndarray]:
 
 
 def test_errors_between_set_points_are_those_of_hermite_interpolation() -> None:
-    """The error of degree 2 k - 1 is at most h^2k / (2^2k (2k)!) times the derivative of that order; h^2 / 8 at k = 1."""
+    """The error of degree 2 k - 1 is at most h^2k / (2^2k (2k)!) times the derivative of order 2 k."""
     inside = STEP * (np.arange(COUNT)[:, None] + np.linspace(0, 1, PARTS + 1))
     found = measured(waves(STEP * np.arange(COUNT + 1)), waves(inside))
     for k, name in enumerate(("linear", "cubic", "quintic"), start=1):
