@@ -35,6 +35,15 @@ PrototypeOption = Annotated[
 ]
 
 
+FormatOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--format",
+        help="With --out: csv, ros2, cia402, zaber, xps or pmac; once for each. [default: the study's own, or csv]",
+    ),
+]
+
+
 @app.command("list")
 def list_(json: JsonOption = False) -> None:
     """List the mechanisms and the studies that come with Linkwright."""
@@ -89,15 +98,25 @@ def optimise(study: StudyArgument, json: JsonOption = False) -> None:
 
 @app.command()
 def trajectory(
-    study: StudyArgument, json: JsonOption = False, out: OutOption = None, prototype: PrototypeOption = False
+    study: StudyArgument,
+    json: JsonOption = False,
+    out: OutOption = None,
+    prototype: PrototypeOption = False,
+    formats: FormatOption = None,
 ) -> None:
     """Time and verify the study's cycle on its committed optimum; with --out, write the set-points."""
     from kinematics.errors import InvalidValue
     from studies import console
     from studies.outputs import write_setpoints
     from studies.pipeline import time_cycle
+    from trajectory.drive_files import FORMATS
 
-    asked = _load(study)
+    if formats and out is None:
+        raise InvalidValue("--format", ", ".join(formats), "--out with it, the folder for the files")
+    for name in formats or ():
+        if name not in FORMATS:
+            raise InvalidValue("--format", name, f"one of {', '.join(FORMATS)}")
+    asked = _load(study, formats)
     if asked.trajectory is None:
         raise InvalidValue(f"study {asked.name}", "no [trajectory] table", "one with the cycle to time")
     robot = _robot(study, asked, prototype)
@@ -105,7 +124,7 @@ def trajectory(
     with console.progress() as tell:
         tell("cycle")
         timing = time_cycle(asked.trajectory, robot)
-    console.print_timing(timing, write_setpoints(timing, out) if out else [], json)
+    console.print_timing(timing, write_setpoints(timing, asked.trajectory, out) if out else [], json)
 
 
 @app.command()
@@ -177,12 +196,17 @@ def _study_file(given: str) -> Path:
     return study_path(given)
 
 
-def _load(given: str) -> Study:
+def _load(given: str, formats: list[str] | None = None) -> Study:
+    """The study, checked against its mechanism; with other formats of drive files where they are given."""
     from studies.load import load_study
-    from studies.setup import require_cycle_inside
+    from studies.setup import require_cycle_inside, require_drive_files
 
     study = load_study(_study_file(given))
+    if formats and study.trajectory is not None:
+        files = study.trajectory.model_copy(update={"files": tuple(formats)})
+        study = study.model_copy(update={"trajectory": files})
     require_cycle_inside(study, _study_file(given))
+    require_drive_files(study, _study_file(given))
     return study
 
 

@@ -17,6 +17,7 @@ from rich.text import Text
 
 from studies.check import Row, shown_pose
 from studies.pipeline import Outcome, Timing
+from trajectory.drive_files import FORMATS
 
 
 @contextmanager
@@ -100,7 +101,8 @@ def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Ti
     robot, figures = timing.cycle.robot, timing.figures()
     if as_json:
         made_for = {"mechanism": type(robot).__name__, "geometry_hash": robot.geometry.digest}
-        print_json({**made_for, **figures, "seconds": timing.seconds, "files": files})
+        between = timing.setpoints.header["between set-points"]
+        print_json({**made_for, **figures, "between_setpoints": between, "seconds": timing.seconds, "files": files})
         return
     names = [name for name in figures if name != "peak_over_limit"]
     title = f"Cycle of {type(robot).__name__}, geometry {robot.geometry.digest[:12]}"
@@ -116,7 +118,17 @@ def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Ti
         ("quantity", "peak", "limit", "peak over limit", "joint", "at [s]"),
         verification.rows(),
     )
+    _print_between(timing)
     _print_files(files)
+
+
+def _print_between(timing: Timing) -> None:
+    """What a drive's own interpolation makes of the set-points."""
+    found = timing.setpoints.header["between set-points"]
+    names = list(dict.fromkeys(name for measured in found.values() for name in measured))
+    users = {way: ", ".join(n for n, f in FORMATS.items() if f.interpolation == way) for way in found}
+    rows = [(way, users[way], *(_figure(measured.get(name, "")) for name in names)) for way, measured in found.items()]
+    print_table("Between set-points, by the drive's interpolation", ("interpolation", "formats", *names), rows)
 
 
 def print_checks(found: dict[str, list[Row]], as_json: bool) -> None:

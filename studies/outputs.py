@@ -7,8 +7,10 @@ from pathlib import Path
 from studies.optimum import FILE, optimum_of
 from studies.pipeline import Outcome, Timing
 from studies.report import html_report, pictures_of
+from studies.schema import Trajectory
+from studies.setup import drive_of
 from trajectory import write_files
-from trajectory.setpoint_file import setpoints_text
+from trajectory.drive_files import drive_files
 
 
 def write_run(outcome: Outcome, folder: Path, command: str, beside: Path | None) -> list[Path]:
@@ -34,20 +36,23 @@ def _report(outcome: Outcome, command: str) -> dict[str, str | bytes]:
     pictures = pictures_of(outcome)
     files: dict[str, str | bytes] = {"report.html": html_report(outcome, pictures, command)}
     files["mechanism.png"] = pictures[0][1]
-    return files | (_setpoints(outcome.timing) if outcome.timing else {})
+    asked = outcome.study.trajectory
+    return files | (_setpoints(outcome.timing, asked) if outcome.timing and asked else {})
 
 
-def write_setpoints(timing: Timing, folder: Path) -> list[Path]:
-    """Only the set-points.
+def write_setpoints(timing: Timing, asked: Trajectory, folder: Path) -> list[Path]:
+    """Only the set-points, in the formats asked for.
 
     Raises:
+        InvalidValue: a format cannot say them.
         CannotWrite: the folder cannot be written to.
     """
-    return write_files(folder, _setpoints(timing))
+    return write_files(folder, _setpoints(timing, asked))
 
 
-def _setpoints(timing: Timing) -> dict[str, str]:
-    files = {"cycle.csv": setpoints_text(timing.setpoints)}
+def _setpoints(timing: Timing, asked: Trajectory) -> dict[str, str | bytes]:
+    drive = drive_of(asked.drive)
+    files = drive_files("cycle", timing.setpoints, asked.files, drive)
     if timing.approach is not None:
-        files["approach.csv"] = setpoints_text(timing.approach.setpoints)
+        files |= drive_files("approach", timing.approach.setpoints, asked.files, drive)
     return files

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import (
     AfterValidator,
@@ -150,6 +150,9 @@ class Limits(_Model):
 
 
 LAWS = ("toppra",)
+File = Literal["csv", "ros2", "cia402", "zaber", "xps", "pmac"]
+FILES = get_args(File)
+Increments = Annotated[int, Field(gt=0)]
 
 
 class Approach(_Model):
@@ -158,6 +161,20 @@ class Approach(_Model):
     speed: Annotated[PerJoint, Key("a speed > 0, or one a joint", Dimension.JOINT_SPEED)]
     acceleration: Annotated[PerJoint, Key("a number > 0, or one a joint (rad/s^2, or m/s^2)")]
     jerk: Annotated[PerJoint, Key("a number > 0, or one a joint (rad/s^3, or m/s^3)")]
+
+
+class Drive(_Model):
+    """What the drive files need of the machine; a value for all axes, or one an axis."""
+
+    axes: Annotated[Annotated[tuple[Name, ...], Field(min_length=1)] | None, Key("a list of names, one a joint")] = None
+    increments: Annotated[
+        Increments | Annotated[tuple[Increments, ...], Field(min_length=1)] | None,
+        Key("a whole number > 0, or one a joint (encoder increments in a turn of the motor, or in a metre on a rail)"),
+    ] = None
+    gear: Annotated[
+        float | Annotated[tuple[float, ...], Field(min_length=1)],
+        Key("a number other than 0, or one a joint (turns of the motor for one of the joint)"),
+    ] = 1.0
 
 
 class Trajectory(_Model):
@@ -172,6 +189,9 @@ class Trajectory(_Model):
     limits: Annotated[Limits, table_of(Limits)]
     approach: Annotated[Approach | None, table_of(Approach)] = None
     """None leaves the approach out."""
+    files: Annotated[Annotated[tuple[File, ...], Field(min_length=1)], Key("a list out of", choices=FILES)] = ("csv",)
+    """Formats of the set-points' files."""
+    drive: Annotated[Drive, table_of(Drive)] = Drive()
 
 
 class Study(_Model):

@@ -9,13 +9,15 @@ import numpy as np
 
 from design import Bounds, Box, Cylinder, Region, Requirement, SumLimit
 from design.nlp import Problem
-from kinematics import FviBounds, Mechanism
+from kinematics import FviBounds, InvalidValue, Mechanism
+from kinematics.drives import to_actuators
 from studies import schema
 from studies.errors import StudyError
 from studies.mechanisms import mechanism_class
 from studies.schema import CylinderRegion, Study
 from studies.toml_file import read_toml
-from trajectory import AdeptCycle, Limits
+from trajectory import AdeptCycle, Limits, Setpoints
+from trajectory.drive_files import Drive, drive_files
 
 OBJECTIVE = "fvi"
 
@@ -85,6 +87,33 @@ def require_cycle_inside(study: Study, file: Path) -> None:
         expected = f"a cycle inside the region, {region_of(study)}"
         problem = read_toml(file).problem(("trajectory", "cycle"), f"the pose ({pose}) on it", expected)
         raise StudyError([problem])
+
+
+def drive_of(drive: schema.Drive) -> Drive:
+    """Names and encoders of the axes."""
+    return Drive(drive.axes, drive.increments, drive.gear)
+
+
+def require_drive_files(study: Study, file: Path) -> None:
+    """Write the drive files of both ends of the cycle to nowhere, before hours of work go into the real ones.
+
+    Raises:
+        StudyError: a format cannot say what the study asks for.
+    """
+    asked = study.trajectory
+    if asked is None or set(asked.files) == {"csv"}:
+        return
+    robot, path = robot_of(study), cycle_of(asked.cycle)
+    (poses,) = path.evaluate(np.array([0.0, path.length]), 0)
+    joints = np.nan_to_num(to_actuators(robot, robot.inverse(poses)))
+    table = np.hstack([[[0.0], [asked.period]], poses, joints, np.zeros((2, 3 * joints.shape[1]))])
+    header = {"period [s]": asked.period, "periods": [1]}
+    ends = Setpoints.of_table(table, robot.actuator_names, robot.actuator_units, header)
+    try:
+        drive_files("cycle", ends, asked.files, drive_of(asked.drive))
+    except InvalidValue as error:
+        problem = read_toml(file).problem(("trajectory", "files"), f"{error.what} {error.found}", error.expected)
+        raise StudyError([problem]) from error
 
 
 def limits_of(limits: schema.Limits) -> Limits:
