@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from trajectory.adept import AdeptCycle
 from trajectory.cycle import Cycle, Piece, there_and_back
+from trajectory.emergency_stop import EmergencyStop, emergency_stop
 from trajectory.errors import LimitsExceeded, RoughPath, SetpointFileError, TimingFailed
 from trajectory.files import CannotWrite, require_writable, write_files
 from trajectory.limits import Limits
@@ -44,6 +45,7 @@ __all__ = [
     "Approach",
     "CannotWrite",
     "Cycle",
+    "EmergencyStop",
     "Limits",
     "LimitsExceeded",
     "Motion",
@@ -63,6 +65,7 @@ __all__ = [
     "TimingFailed",
     "Verification",
     "cycle_setpoints",
+    "emergency_stop",
     "motion_of",
     "plan_approach",
     "pose_motion",

@@ -35,7 +35,17 @@ def pose_motion(path: Path, along: PathMotion) -> PoseMotion:
         path: of the pose.
         along: (...,) arc length and its time derivatives.
     """
-    pose, first, second, third = path.evaluate(along.position, 3)
+    return travelled(path.evaluate(along.position, 3), along)
+
+
+def travelled(derivatives: tuple[Array, ...], along: PathMotion) -> PoseMotion:
+    """The pose in time, by the chain rule.
+
+    Args:
+        derivatives: pose (..., n) and its first three derivatives by the parameter along the way.
+        along: (...,) that parameter and its time derivatives.
+    """
+    pose, first, second, third = derivatives
     v, a, j = (x[..., None] for x in (along.speed, along.acceleration, along.jerk))
     return PoseMotion(pose, first * v, second * v**2 + first * a, third * v**3 + 3 * second * v * a + first * j)
 

@@ -1,0 +1,122 @@
+"""A stop along the path from any instant: within every limit, never off the path, never past the end of the piece."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from kinematics import Heli4, InvalidValue, Peppermill
+from trajectory import (
+    AdeptCycle,
+    Cycle,
+    EmergencyStop,
+    Limits,
+    LimitsExceeded,
+    TimedMotion,
+    TimedPath,
+    TimeLaw,
+    emergency_stop,
+    there_and_back,
+    time_optimal,
+)
+
+COUNT = 60
+
+
+@pytest.fixture(scope="module")
+def stops(robot: Heli4, cycle: Cycle, limits: Limits) -> list[tuple[TimedMotion, EmergencyStop]]:
+    """From instants all over the way there and some of the way back, at the knots of the law and its corners too."""
+    there, back = (piece.motion for piece in cycle.pieces)
+    corners = np.searchsorted(there.law.position, there.path.knots[1:-1])
+    at = [*np.linspace(0.0, there.duration, COUNT - 8)[1:-1], *there.times[[1, *corners, -2]], 1e-9 * there.duration]
+    found = [(there, emergency_stop(robot, there, t, limits, 1.0)) for t in at]
+    return found + [(back, emergency_stop(robot, back, f * back.duration, limits, 1.0)) for f in (0.3, 0.5, 0.7)]
+
+
+def test_from_every_instant_the_limits_hold(stops: list[tuple[TimedMotion, EmergencyStop]]) -> None:
+    assert len(stops) >= 50
+    for _, stop in stops:
+        assert max(stop.verification.peak_over_limit.values()) <= 1.0
+        assert set(stop.verification.failures) <= {"start speed"}
+    assert np.median([stop.verification.peak_over_limit["torque"] for _, stop in stops]) > 0.999
+
+
+def test_it_takes_over_the_motion_and_rests_before_its_end(stops: list[tuple[TimedMotion, EmergencyStop]]) -> None:
+    for motion, stop in stops:
+        first, last = stop.motion.at(np.array([0.0, stop.duration])), motion.at(np.array([stop.start, motion.duration]))
+        assert first.pose[0] == pytest.approx(last.pose[0], abs=1e-12)
+        assert first.velocity[0] == pytest.approx(last.velocity[0], abs=1e-9)
+        assert np.abs(first.velocity[-1]).max() < 1e-6
+        assert stop.duration <= motion.duration - stop.start
+        assert stop.start <= stop.motion.pace.position[-1] <= motion.duration
+        assert (np.diff(stop.motion.pace.speed) <= 0.0).all()
+
+
+def test_it_never_leaves_the_path(stops: list[tuple[TimedMotion, EmergencyStop]], path: AdeptCycle) -> None:
+    points = cKDTree(path.evaluate(np.linspace(0.0, path.length, 100_001), 0)[0])
+    for _, stop in stops:
+        poses = stop.motion.at(np.linspace(0.0, stop.duration, 50)).pose
+        assert points.query(poses)[0].max() < path.length / 100_000 * 10  # theta runs up to 20 rad a metre
+
+
+def test_the_speeds_of_the_stop_are_the_slopes_of_its_poses(stops: list[tuple[TimedMotion, EmergencyStop]]) -> None:
+    _, stop = stops[len(stops) // 3]
+    t = np.linspace(0.0, stop.duration, 20_001)
+    motion = stop.motion.at(t)
+    for value, rate in ((motion.pose, motion.velocity), (motion.velocity, motion.acceleration)):
+        slope = (value[2:] - value[:-2]) / (t[2:] - t[:-2])[:, None]
+        assert np.median(np.abs(slope - rate[1:-1])) < 1e-5 * np.abs(rate).max()
+
+
+@pytest.mark.parametrize("share", [0.2, 0.4, 0.7])
+def test_on_a_straight_line_it_is_the_parabola_of_the_cap(robot: Heli4, straight: type, share: float) -> None:
+    limits = Limits(speed=20.0, tool_acceleration=30.0)
+    timed = time_optimal(robot, straight(), limits, payload=1.0)
+    start = share * timed.duration
+    speed = timed.at(np.array(start)).velocity[2]
+    stop = emergency_stop(robot, timed, start, limits, 1.0)
+    assert stop.duration == pytest.approx(speed / 30.0, rel=1e-3)
+    travelled = stop.pose[2] - timed.at(np.array(start)).pose[2]
+    assert travelled == pytest.approx(speed**2 / 60.0, rel=1e-3)
+
+
+def test_a_smooth_law_of_few_knots_is_stopped_too(robot: Heli4, path: AdeptCycle) -> None:
+    """s''' = + - - + over quarters of T: rest to rest over L with |s'''| = 32 L / T^3."""
+    quarter, jerk = 0.1, 0.5 * path.length / 0.1**3
+    times = quarter * np.arange(5)
+    acceleration = jerk * quarter * np.array([0.0, 1.0, 0.0, -1.0])
+    speed = jerk * quarter**2 * np.array([0.0, 0.5, 1.0, 0.5, 0.0])
+    position = jerk * quarter**3 * np.array([0.0, 1 / 6, 1.0, 11 / 6, 2.0])
+    law = TimeLaw("S", times, position, speed, acceleration, jerk * np.array([1.0, -1.0, -1.0, 1.0]))
+    limits = Limits(speed=20.0, torque=127.0, jerk=1e5)
+    stop = emergency_stop(robot, TimedPath(path, law), 0.2, limits, 1.0)
+    assert stop.verification.peak_over_limit["torque"] == pytest.approx(1.0, abs=1e-3)
+    assert stop.duration < 0.1
+    assert "jerk left out" in stop.verification.notes[0]
+
+
+def test_motors_that_share_the_joints_keep_their_limits() -> None:
+    robot = Peppermill()
+    path = AdeptCycle.centred(tuple(robot.home[:3]), span=0.1, blend=0.02, turn=0.5, start_angle=robot.home[3])
+    limits = Limits(speed=300.0, torque=10.0)
+    cycle = there_and_back(robot, path, limits, 0.5, time_optimal)
+    motion = cycle.pieces[0].motion
+    for share in (0.2, 0.5, 0.6):
+        stop = emergency_stop(robot, motion, share * motion.duration, limits, 0.5)
+        assert 0.99 < max(stop.verification.peak_over_limit.values()) <= 1.0
+
+
+def test_a_motion_that_is_over_its_limits_cannot_be_stopped_within_them(robot: Heli4, cycle: Cycle) -> None:
+    motion = cycle.pieces[0].motion
+    with pytest.raises(LimitsExceeded, match="torque"):
+        emergency_stop(robot, motion, 0.6 * motion.duration, replace(cycle.limits, torque=60.0), 1.0)
+
+
+@pytest.mark.parametrize("share", [0.0, 1.0, -0.1, np.nan])
+def test_where_nothing_moves_nothing_is_stopped(robot: Heli4, cycle: Cycle, limits: Limits, share: float) -> None:
+    motion = cycle.pieces[0].motion
+    with pytest.raises(InvalidValue, match="start of an emergency stop"):
+        emergency_stop(robot, motion, share * motion.duration, limits, 1.0)

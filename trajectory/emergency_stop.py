@@ -1,0 +1,155 @@
+"""An emergency stop along the path: from any instant of a motion to rest, on the way that it was on.
+
+The motion p(tau) is travelled at a pace tau(t) that falls from 1 to 0. With x = tau'^2 and u = tau'' every limit on
+acceleration and torque is linear in (u, x), as in Bobrow, Dubowsky and Gibson, "Time-optimal control of robotic
+manipulators along specified paths", IJRR 1985:
+
+    joint acceleration   q' u + q'' x
+    torque               (tau(p, 0, p') - c) u + (tau(p, p', p'') - c) x + c,  c = tau(p, 0, 0)
+    tool acceleration    |p' u + p'' x|, a disc
+
+with a dash for the derivative by tau. The pace takes the least u that they allow, all the way down. No other pace has
+a lower x anywhere, since it would have to cross this one with less than the least u: so this is the shortest way to
+rest. (0, 0) and (0, 1), the motion held still and the motion itself, are within the limits, and so by convexity is
+(0, x) between them: u is never above 0, speeds never rise, and the end of the motion is never passed. The jerk is not
+limited: the acceleration steps where braking starts and where it ends.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinematics import InvalidValue, Mechanism
+from kinematics.dynamics import inverse_dynamics
+from kinematics.motion import actuator_motion
+from trajectory.errors import LimitsExceeded
+from trajectory.limits import Limits
+from trajectory.paced import PacedMotion, one_sided
+from trajectory.path import Array
+from trajectory.timed import TimedMotion
+from trajectory.timing import TimeLaw
+from trajectory.verification import Verification, verify
+
+STEPS = 2000  # of the whole motion, at least
+_WITHIN = 1.0 - 1e-4  # of the limits, for braking to keep them between the steps too
+Rows = tuple[Array, Array, Array]  # by_u, by_x, still; each (n, 2, rows), over the limit, at both ends of a step
+
+
+@dataclass(frozen=True, eq=False)
+class EmergencyStop:
+    """A stop that was verified.
+
+    Attributes:
+        motion: from the state at `start` to rest.
+        start: when it interrupts the motion [s].
+        verification: of the stop, against every limit but the jerk's.
+    """
+
+    motion: PacedMotion
+    start: float
+    verification: Verification
+
+    @property
+    def duration(self) -> float:
+        """From the start of the braking to rest [s]."""
+        return self.motion.duration
+
+    @property
+    def pose(self) -> Array:
+        """(n,) where it rests."""
+        return self.motion.ends[1]
+
+
+def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float) -> EmergencyStop:
+    """The shortest stop on the motion's own way, within every limit but the jerk's.
+
+    Args:
+        robot: any mechanism whose pose is [x, y, z, theta].
+        timed: a motion within these limits.
+        start: when the braking starts, inside (0, T) [s].
+        limits: of joints and tool; a limit of the jerk is not kept.
+        payload: mass at the tool [kg].
+
+    Raises:
+        InvalidValue: a start at which there is no motion.
+        LimitsExceeded: the stop breaks a limit, as where the motion already does.
+    """
+    if not 0.0 < start < timed.duration:
+        raise InvalidValue("start of an emergency stop", start, f"inside (0, {timed.duration:.6g}) s")
+    knots = _steps(timed, start)
+    pose, first, second, _ = timed.at(one_sided(knots, np.stack([knots[:-1], knots[1:]], axis=1)))
+    tau, speed = _brake(knots, _rows(robot, pose, first, second, limits, payload), _disc(first, second, limits))
+    motion = PacedMotion(timed, TimeLaw.constant_acceleration("emergency stop", tau, speed))
+    found = verify(robot, motion, limits.without_jerk(), payload)
+    failures = {name: value for name, value in found.failures.items() if name != "start speed"}  # it starts in motion
+    if failures:
+        raise LimitsExceeded(failures, 1.0)
+    return EmergencyStop(motion, start, found)
+
+
+def _steps(timed: TimedMotion, start: float) -> Array:
+    """Times from the start to the end of the motion: its knots, and more in between where these are far apart."""
+    knots = np.concatenate([[start], timed.times[timed.times > start * (1 + 1e-12)]])
+    parts = np.ceil(np.diff(knots) / timed.duration * STEPS).astype(int)
+    steps = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(knots[:-1], knots[1:], parts, strict=True)]
+    return np.concatenate([*steps, knots[-1:]])
+
+
+def _rows(robot: Mechanism, pose: Array, first: Array, second: Array, limits: Limits, payload: float) -> Rows:
+    """Joint acceleration and torque over their limits: |by_u u + by_x x + still| <= 1."""
+    count, none = len(robot.joint_names), np.zeros_like(pose)
+    joints = actuator_motion(robot, pose, first, second, none)
+    rows = [(np.zeros((*pose.shape[:-1], 0)),) * 3]
+    acceleration, torque = limits.of_joints("acceleration", count), limits.of_joints("torque", count)
+    if acceleration is not None:
+        rows.append((joints.first / acceleration, joints.second / acceleration, np.zeros_like(joints.first)))
+    if torque is not None:
+        still = inverse_dynamics(robot, payload, pose, none, none)
+        by_u = inverse_dynamics(robot, payload, pose, none, first) - still
+        by_x = inverse_dynamics(robot, payload, pose, first, second) - still
+        rows.append((by_u / torque, by_x / torque, still / torque))
+    by_u, by_x, still = (np.concatenate(part, axis=-1) for part in zip(*rows, strict=True))
+    return by_u, by_x, still
+
+
+def _disc(first: Array, second: Array, limits: Limits) -> tuple[Array, Array]:
+    """The tool's acceleration over its cap, (n, 2, 3) by u and by x; nothing where there is none."""
+    cap = limits.tool_acceleration or math.inf
+    return first[..., :3] / cap, second[..., :3] / cap
+
+
+def _brake(knots: Array, rows: Rows, disc: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Knots and pace (k,) of the braking, as far as it goes."""
+    steps = np.diff(knots)
+    x, tau, pace = 1.0, [knots[0]], [1.0]
+    for k, step in enumerate(steps):
+        # at the end of the step x is x + 2 step u
+        ahead = np.array([0.0, 2.0 * step])[:, None]
+        by_u, by_x, still = (part[k] for part in rows)
+        least = _least(by_u + ahead * by_x, by_x * x + still)
+        least = max(least, _least_in_disc(disc[0][k] + ahead * disc[1][k], disc[1][k] * x))
+        u = min(least, 0.0)
+        if x + 2.0 * step * u <= 0.0:
+            return np.array([*tau, tau[-1] - x / (2.0 * u)]), np.array([*pace, 0.0])
+        x += 2.0 * step * u
+        tau.append(knots[k + 1])
+        pace.append(math.sqrt(x))
+    return np.array(tau), np.array(pace)
+
+
+def _least(by_u: Array, rest: Array) -> float:
+    """The least u with |by_u u + rest| <= `_WITHIN` in every row."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        least = (-_WITHIN * np.sign(by_u) - rest) / by_u
+    return float(np.where(by_u == 0.0, -np.inf, least).max(initial=-np.inf))
+
+
+def _least_in_disc(by_u: Array, rest: Array) -> float:
+    """The least u with |by_u u + rest| <= `_WITHIN` at both ends, (2, 3) each."""
+    a, b, c = (by_u**2).sum(-1), (by_u * rest).sum(-1), (rest**2).sum(-1) - _WITHIN**2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        least = (-b - np.sqrt(np.maximum(b**2 - a * c, 0.0))) / a
+    return float(np.where(a == 0.0, -np.inf, least).max())
