@@ -33,7 +33,8 @@ from trajectory.timed import TimedMotion
 from trajectory.timing import TimeLaw
 from trajectory.verification import Verification, verify
 
-STEPS = 2000  # of the whole motion, at least
+COARSE = 200  # steps to see about how long the braking is
+STEPS = 1000  # of the braking, at least
 _WITHIN = 1.0 - 1e-4  # of the limits, for braking to keep them between the steps too
 Rows = tuple[Array, Array, Array]  # by_u, by_x, still; each (n, 2, rows), over the limit, at both ends of a step
 
@@ -79,10 +80,9 @@ def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: L
     """
     if not 0.0 < start < timed.duration:
         raise InvalidValue("start of an emergency stop", start, f"inside (0, {timed.duration:.6g}) s")
-    knots = _steps(timed, start)
-    pose, first, second, _ = timed.at(one_sided(knots, np.stack([knots[:-1], knots[1:]], axis=1)))
-    tau, speed = _brake(knots, _rows(robot, pose, first, second, limits, payload), _disc(first, second, limits))
-    motion = PacedMotion(timed, TimeLaw.constant_acceleration("emergency stop", tau, speed))
+    rest = _pace(robot, timed, np.linspace(start, timed.duration, COARSE + 1), limits, payload)[0][-1]
+    tau, pace = _pace(robot, timed, _steps(timed, start, rest), limits, payload)
+    motion = PacedMotion(timed, TimeLaw.constant_acceleration("emergency stop", tau, pace))
     found = verify(robot, motion, limits.without_jerk(), payload)
     failures = {name: value for name, value in found.failures.items() if name != "start speed"}  # it starts in motion
     if failures:
@@ -90,12 +90,19 @@ def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: L
     return EmergencyStop(motion, start, found)
 
 
-def _steps(timed: TimedMotion, start: float) -> Array:
-    """Times from the start to the end of the motion: its knots, and more in between where these are far apart."""
-    knots = np.concatenate([[start], timed.times[timed.times > start * (1 + 1e-12)]])
-    parts = np.ceil(np.diff(knots) / timed.duration * STEPS).astype(int)
-    steps = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(knots[:-1], knots[1:], parts, strict=True)]
-    return np.concatenate([*steps, knots[-1:]])
+def _steps(timed: TimedMotion, start: float, rest: float) -> Array:
+    """Times from the start to the end of the motion: its knots, and more between where it is about to be at rest."""
+    later = timed.times[timed.times > start * (1 + 1e-12)]
+    even = np.linspace(start, rest, STEPS + 1)
+    # an even step that is almost a knot would leave a step of rounding's size
+    apart = np.abs(even[:, None] - later[np.searchsorted(later, even).clip(1, later.size - 1)[:, None] + [-1, 0]])
+    return np.union1d(even[apart.min(axis=1) > 1e-3 * (rest - start) / STEPS], later)
+
+
+def _pace(robot: Mechanism, timed: TimedMotion, knots: Array, limits: Limits, payload: float) -> tuple[Array, Array]:
+    """Times of the motion (k,) and the pace there, from 1 to 0."""
+    pose, first, second, _ = timed.at(one_sided(knots, np.stack([knots[:-1], knots[1:]], axis=1)))
+    return _brake(knots, _rows(robot, pose, first, second, limits, payload), _disc(first, second, limits))
 
 
 def _rows(robot: Mechanism, pose: Array, first: Array, second: Array, limits: Limits, payload: float) -> Rows:
@@ -115,13 +122,13 @@ def _rows(robot: Mechanism, pose: Array, first: Array, second: Array, limits: Li
     return by_u, by_x, still
 
 
-def _disc(first: Array, second: Array, limits: Limits) -> tuple[Array, Array]:
-    """The tool's acceleration over its cap, (n, 2, 3) by u and by x; nothing where there is none."""
-    cap = limits.tool_acceleration or math.inf
-    return first[..., :3] / cap, second[..., :3] / cap
+def _disc(first: Array, second: Array, limits: Limits) -> tuple[Array, Array] | None:
+    """The tool's acceleration over its cap, (n, 2, 3) by u and by x; None where there is no cap."""
+    cap = limits.tool_acceleration
+    return None if cap is None else (first[..., :3] / cap, second[..., :3] / cap)
 
 
-def _brake(knots: Array, rows: Rows, disc: tuple[Array, Array]) -> tuple[Array, Array]:
+def _brake(knots: Array, rows: Rows, disc: tuple[Array, Array] | None) -> tuple[Array, Array]:
     """Knots and pace (k,) of the braking, as far as it goes."""
     steps = np.diff(knots)
     x, tau, pace = 1.0, [knots[0]], [1.0]
@@ -130,7 +137,8 @@ def _brake(knots: Array, rows: Rows, disc: tuple[Array, Array]) -> tuple[Array, 
         ahead = np.array([0.0, 2.0 * step])[:, None]
         by_u, by_x, still = (part[k] for part in rows)
         least = _least(by_u + ahead * by_x, by_x * x + still)
-        least = max(least, _least_in_disc(disc[0][k] + ahead * disc[1][k], disc[1][k] * x))
+        if disc is not None:
+            least = max(least, _least_in_disc(disc[0][k] + ahead * disc[1][k], disc[1][k] * x))
         u = min(least, 0.0)
         if x + 2.0 * step * u <= 0.0:
             return np.array([*tau, tau[-1] - x / (2.0 * u)]), np.array([*pace, 0.0])

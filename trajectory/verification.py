@@ -24,6 +24,7 @@ from trajectory.timed import TimedMotion
 LEAST_PARTS = 10  # of each interval of the law
 LEAST_STEPS = 10_000  # of the whole path, about
 _SMOOTH = 1e-9  # of the largest s'': a smaller jump is rounding
+_LEAST_WAY = 1e-6  # of the joints [rad or m]: on a shorter one, rounding alone is beyond the tolerance
 _TOLERANCES = {  # SI, the closure in m^2; the two integrals are relative
     "start pose": 1e-9,
     "end pose": 1e-9,
@@ -212,7 +213,7 @@ def _integral_residuals(times: Array, motion: Motion) -> dict[str, float]:
     gap = joints.position[:, -1] - joints.position[0, 0] - _integrals(times, joints.first).cumsum(axis=0)
     return {
         "integral of acceleration": _largest(jump) / _largest(joints.first),
-        "integral of speed": _largest(gap) / float(np.ptp(joints.position, axis=(0, 1)).max()),
+        "integral of speed": _largest(gap) / max(float(np.ptp(joints.position, axis=(0, 1)).max()), _LEAST_WAY),
     }
 
 

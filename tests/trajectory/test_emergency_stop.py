@@ -19,6 +19,7 @@ from trajectory import (
     TimedPath,
     TimeLaw,
     emergency_stop,
+    repair,
     there_and_back,
     time_optimal,
 )
@@ -30,8 +31,8 @@ COUNT = 60
 def stops(robot: Heli4, cycle: Cycle, limits: Limits) -> list[tuple[TimedMotion, EmergencyStop]]:
     """From instants all over the way there and some of the way back, at the knots of the law and its corners too."""
     there, back = (piece.motion for piece in cycle.pieces)
-    corners = np.searchsorted(there.law.position, there.path.knots[1:-1])
-    at = [*np.linspace(0.0, there.duration, COUNT - 8)[1:-1], *there.times[[1, *corners, -2]], 1e-9 * there.duration]
+    corners = np.interp(there.path.knots[1:-1], there.law.position, there.law.times)
+    at = [*np.linspace(0.0, there.duration, COUNT - 8)[1:-1], *corners, *there.times[[1, -2]], 1e-6 * there.duration]
     found = [(there, emergency_stop(robot, there, t, limits, 1.0)) for t in at]
     return found + [(back, emergency_stop(robot, back, f * back.duration, limits, 1.0)) for f in (0.3, 0.5, 0.7)]
 
@@ -50,16 +51,18 @@ def test_it_takes_over_the_motion_and_rests_before_its_end(stops: list[tuple[Tim
         assert first.pose[0] == pytest.approx(last.pose[0], abs=1e-12)
         assert first.velocity[0] == pytest.approx(last.velocity[0], abs=1e-9)
         assert np.abs(first.velocity[-1]).max() < 1e-6
-        assert stop.duration <= motion.duration - stop.start
+        left = motion.duration - stop.start
+        assert stop.duration <= left * (1 + 1e-3)  # the least of the way; 1e-4 of the limits is kept in hand
         assert stop.start <= stop.motion.pace.position[-1] <= motion.duration
         assert (np.diff(stop.motion.pace.speed) <= 0.0).all()
 
 
 def test_it_never_leaves_the_path(stops: list[tuple[TimedMotion, EmergencyStop]], path: AdeptCycle) -> None:
     points = cKDTree(path.evaluate(np.linspace(0.0, path.length, 100_001), 0)[0])
+    apart = np.linalg.norm(np.diff(points.data, axis=0), axis=1).max()
     for _, stop in stops:
         poses = stop.motion.at(np.linspace(0.0, stop.duration, 50)).pose
-        assert points.query(poses)[0].max() < path.length / 100_000 * 10  # theta runs up to 20 rad a metre
+        assert points.query(poses)[0].max() < 0.51 * apart
 
 
 def test_the_speeds_of_the_stop_are_the_slopes_of_its_poses(stops: list[tuple[TimedMotion, EmergencyStop]]) -> None:
@@ -74,7 +77,7 @@ def test_the_speeds_of_the_stop_are_the_slopes_of_its_poses(stops: list[tuple[Ti
 @pytest.mark.parametrize("share", [0.2, 0.4, 0.7])
 def test_on_a_straight_line_it_is_the_parabola_of_the_cap(robot: Heli4, straight: type, share: float) -> None:
     limits = Limits(speed=20.0, tool_acceleration=30.0)
-    timed = time_optimal(robot, straight(), limits, payload=1.0)
+    timed = repair(robot, time_optimal(robot, straight(), limits, payload=1.0), limits, 1.0).motion
     start = share * timed.duration
     speed = timed.at(np.array(start)).velocity[2]
     stop = emergency_stop(robot, timed, start, limits, 1.0)
@@ -100,8 +103,8 @@ def test_a_smooth_law_of_few_knots_is_stopped_too(robot: Heli4, path: AdeptCycle
 
 def test_motors_that_share_the_joints_keep_their_limits() -> None:
     robot = Peppermill()
-    path = AdeptCycle.centred(tuple(robot.home[:3]), span=0.1, blend=0.02, turn=0.5, start_angle=robot.home[3])
-    limits = Limits(speed=300.0, torque=10.0)
+    path = AdeptCycle.centred((0.0, 0.0, -0.0125), heading=0.6)
+    limits = Limits(speed=314.0, torque=7.2)
     cycle = there_and_back(robot, path, limits, 0.5, time_optimal)
     motion = cycle.pieces[0].motion
     for share in (0.2, 0.5, 0.6):
