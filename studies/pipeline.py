@@ -18,7 +18,7 @@ from kinematics import Mechanism
 from studies import schema, setup
 from studies.errors import Failed, RequirementFailed
 from studies.schema import Study
-from trajectory import Approach, Cycle, Setpoints, cycle_setpoints, there_and_back
+from trajectory import Cycle, Move, Setpoints, cycle_setpoints, there_and_back
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Timing:
 
     cycle: Cycle
     setpoints: Setpoints
-    approach: Approach | None
+    approach: Move | None
     seconds: float
 
     @property
@@ -140,7 +140,7 @@ def margins_on_path(problem: Problem, robot: Mechanism, asked: schema.Trajectory
 
 def time_cycle(asked: schema.Trajectory, robot: Mechanism) -> Timing:
     """Time, verify and sample the study's cycle on a robot."""
-    from trajectory.approach import plan_approach
+    from trajectory.moves import plan_move
     from trajectory.toppra_law import time_optimal
 
     started = time.perf_counter()
@@ -152,7 +152,8 @@ def time_cycle(asked: schema.Trajectory, robot: Mechanism) -> Timing:
     approach = None
     if asked.approach is not None:
         gentle = setup.approach_limits(asked.approach, limits, len(robot.joint_names))
-        approach = plan_approach(robot, points.pose[0], gentle, payload, asked.period, robot.actuator_units)
+        home, units = np.array(robot.home), robot.actuator_units
+        approach = plan_move(robot, home, points.pose[0], gentle, payload, asked.period, units)
     return Timing(cycle, points, approach, seconds)
 
 

@@ -1,6 +1,6 @@
 """Paths, actuator limits, timing laws, verification and set-points.
 
-`time_optimal` and `plan_approach` load their solvers, toppra and ruckig, at first use.
+`time_optimal`, `plan_move` and `plan_stop` load their solvers, toppra and ruckig, at first use.
 """
 
 from __future__ import annotations
@@ -24,12 +24,13 @@ from trajectory.timing import PathMotion, TimeLaw
 from trajectory.verification import Peak, Verification, verify
 
 if TYPE_CHECKING:
-    from trajectory.approach import Approach, plan_approach
+    from trajectory.moves import Move, plan_move, plan_stop
     from trajectory.toppra_law import time_optimal
 
 _LAZY = {
-    "Approach": "trajectory.approach",
-    "plan_approach": "trajectory.approach",
+    "Move": "trajectory.moves",
+    "plan_move": "trajectory.moves",
+    "plan_stop": "trajectory.moves",
     "time_optimal": "trajectory.toppra_law",
 }
 
@@ -42,13 +43,13 @@ def __getattr__(name: str) -> Any:
 
 __all__ = [
     "AdeptCycle",
-    "Approach",
     "CannotWrite",
     "Cycle",
     "EmergencyStop",
     "Limits",
     "LimitsExceeded",
     "Motion",
+    "Move",
     "Path",
     "PathMotion",
     "Peak",
@@ -67,7 +68,8 @@ __all__ = [
     "cycle_setpoints",
     "emergency_stop",
     "motion_of",
-    "plan_approach",
+    "plan_move",
+    "plan_stop",
     "pose_motion",
     "read_setpoints",
     "repair",

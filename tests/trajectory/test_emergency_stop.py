@@ -51,8 +51,8 @@ def test_it_takes_over_the_motion_and_rests_before_its_end(stops: list[tuple[Tim
         assert first.pose[0] == pytest.approx(last.pose[0], abs=1e-12)
         assert first.velocity[0] == pytest.approx(last.velocity[0], abs=1e-9)
         assert np.abs(first.velocity[-1]).max() < 1e-6
-        left = motion.duration - stop.start
-        assert stop.duration <= left * (1 + 1e-3)  # the least of the way; 1e-4 of the limits is kept in hand
+        # the way is the least, not the time: close to the end, braking rests no sooner than the motion itself
+        assert stop.duration <= 1.01 * (motion.duration - stop.start)
         assert stop.start <= stop.motion.pace.position[-1] <= motion.duration
         assert (np.diff(stop.motion.pace.speed) <= 0.0).all()
 

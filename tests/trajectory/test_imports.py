@@ -19,7 +19,7 @@ def importers(of: str) -> set[str]:
 
 def test_each_solver_is_imported_from_one_module() -> None:
     assert importers("toppra") == {"toppra_law.py"}
-    assert importers("ruckig") == {"approach.py"}
+    assert importers("ruckig") == {"moves.py"}
 
 
 def test_only_kinematics_is_imported_of_the_other_packages() -> None:

@@ -5,7 +5,7 @@ import pytest
 
 from kinematics import Peppermill
 from kinematics.dynamics import inverse_dynamics
-from trajectory import AdeptCycle, Limits, cycle_setpoints, plan_approach, there_and_back, time_optimal
+from trajectory import AdeptCycle, Limits, cycle_setpoints, plan_move, there_and_back, time_optimal
 
 PERIOD = 1e-3
 LIMITS = Limits(speed=314.0, torque=7.2)
@@ -49,7 +49,7 @@ def test_set_points_are_named_and_counted_at_the_motors(cycle):
 def test_an_approach_moves_the_motors_from_rest_to_rest_within_their_limits():
     robot, target = Peppermill(), np.array([0.15, -0.1, 0.02, 3.0])
     limits = Limits(speed=300.0, acceleration=2e3, jerk=1e6, torque=7.2)
-    found = plan_approach(robot, target, limits, 1.0, PERIOD, robot.actuator_units)
+    found = plan_move(robot, np.array(robot.home), target, limits, 1.0, PERIOD, robot.actuator_units)
     motors = found.setpoints.joints
     np.testing.assert_allclose(motors[[0, -1]], drives(robot.inverse(np.stack([robot.home, target]))), atol=1e-6)
     assert np.abs(np.diff(motors, axis=0) / PERIOD).max() <= limits.speed * (1 + 1e-9)

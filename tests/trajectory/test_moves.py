@@ -1,4 +1,4 @@
-"""The approach keeps the joints' limits, and ends where the cycle starts, at rest."""
+"""A move keeps the joints' limits, and ends where it should, at rest."""
 
 from __future__ import annotations
 
@@ -10,11 +10,23 @@ import pytest
 from ruckig import Result
 
 from kinematics import Heli4, InvalidValue, UnreachablePose
-from trajectory import AdeptCycle, Approach, Limits, LimitsExceeded, TimingFailed, plan_approach, read_setpoints
-from trajectory import approach as module
+from kinematics.motion import actuator_motion
+from trajectory import (
+    AdeptCycle,
+    Cycle,
+    Limits,
+    LimitsExceeded,
+    Move,
+    TimingFailed,
+    plan_move,
+    plan_stop,
+    read_setpoints,
+)
+from trajectory import moves as module
 from trajectory import write_setpoints as write
 
 UNITS = ("rad",) * 4
+HOME = np.array(Heli4.home)
 LIMITS = Limits(speed=20.0, acceleration=250.0, jerk=1e5, torque=127.0)
 
 
@@ -24,11 +36,11 @@ def target(path: AdeptCycle) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def approach(robot: Heli4, target: np.ndarray) -> Approach:
-    return plan_approach(robot, target, LIMITS, 1.0, 1e-3, UNITS)
+def approach(robot: Heli4, target: np.ndarray) -> Move:
+    return plan_move(robot, HOME, target, LIMITS, 1.0, 1e-3, UNITS)
 
 
-def test_it_goes_from_home_to_the_cycle_s_start_at_rest(robot: Heli4, target: np.ndarray, approach: Approach) -> None:
+def test_it_goes_from_home_to_the_cycle_s_start_at_rest(robot: Heli4, target: np.ndarray, approach: Move) -> None:
     points = approach.setpoints
     assert points.pose[0] == pytest.approx(robot.home, abs=1e-9)
     assert points.pose[-1] == pytest.approx(target, abs=1e-9)
@@ -39,7 +51,7 @@ def test_it_goes_from_home_to_the_cycle_s_start_at_rest(robot: Heli4, target: np
     assert approach.duration / 1e-3 == pytest.approx(round(approach.duration / 1e-3), abs=1e-9)
 
 
-def test_it_keeps_the_limits_and_uses_one(approach: Approach) -> None:
+def test_it_keeps_the_limits_and_uses_one(approach: Move) -> None:
     points = approach.setpoints
     assert np.abs(points.speed).max() <= 20.0
     assert np.abs(points.acceleration).max() <= 250.0 * (1 + 1e-9)
@@ -48,13 +60,13 @@ def test_it_keeps_the_limits_and_uses_one(approach: Approach) -> None:
     assert max(approach.peak_over_limit.values()) == pytest.approx(1.0, abs=0.02)
 
 
-def test_the_joints_move_on_a_straight_line(approach: Approach) -> None:
+def test_the_joints_move_on_a_straight_line(approach: Move) -> None:
     joints = approach.setpoints.joints
     fraction = (joints - joints[0]) / (joints[-1] - joints[0])
     assert np.ptp(fraction, axis=1).max() < 1e-9
 
 
-def test_its_speeds_and_torques_follow_from_its_motion(robot: Heli4, approach: Approach) -> None:
+def test_its_speeds_and_torques_follow_from_its_motion(robot: Heli4, approach: Move) -> None:
     points = approach.setpoints
     slope = (points.joints[2:] - points.joints[:-2]) / 2e-3
     assert np.abs(slope - points.speed[1:-1]).max() < 1e5 * 1e-6
@@ -70,18 +82,18 @@ def test_its_speeds_and_torques_follow_from_its_motion(robot: Heli4, approach: A
 
 def test_it_can_start_elsewhere(robot: Heli4, target: np.ndarray) -> None:
     start = np.array([0.1, 0.1, -0.75, 0.5])
-    found = plan_approach(robot, target, replace(LIMITS, acceleration=200.0), 1.0, 1e-3, UNITS, start)
+    found = plan_move(robot, start, target, replace(LIMITS, acceleration=200.0), 1.0, 1e-3, UNITS)
     assert found.setpoints.pose[0] == pytest.approx(start, abs=1e-9)
 
 
 def test_where_the_target_is_the_start_it_rests_for_a_period(robot: Heli4) -> None:
-    found = plan_approach(robot, np.array(robot.home), LIMITS, 1.0, 1e-3, UNITS)
+    found = plan_move(robot, HOME, HOME, LIMITS, 1.0, 1e-3, UNITS)
     assert found.duration == 1e-3
     assert np.abs(found.setpoints.speed).max() == 0.0
     assert found.setpoints.pose == pytest.approx(np.tile(robot.home, (2, 1)), abs=1e-9)
 
 
-def test_its_set_points_are_written_and_read(tmp_path_factory: pytest.TempPathFactory, approach: Approach) -> None:
+def test_its_set_points_are_written_and_read(tmp_path_factory: pytest.TempPathFactory, approach: Move) -> None:
     file = tmp_path_factory.mktemp("approach") / "approach.csv"
     write(file, approach.setpoints)
     back = read_setpoints(file)
@@ -91,29 +103,29 @@ def test_its_set_points_are_written_and_read(tmp_path_factory: pytest.TempPathFa
 
 def test_a_torque_beyond_its_limit_is_refused(robot: Heli4, target: np.ndarray) -> None:
     with pytest.raises(LimitsExceeded, match="torque"):
-        plan_approach(robot, target, replace(LIMITS, acceleration=450.0), 1.0, 1e-3, UNITS)
+        plan_move(robot, HOME, target, replace(LIMITS, acceleration=450.0), 1.0, 1e-3, UNITS)
 
 
 @pytest.mark.parametrize("field", ["acceleration", "jerk"])
 def test_it_needs_acceleration_and_jerk_limits(robot: Heli4, target: np.ndarray, field: str) -> None:
     with pytest.raises(InvalidValue, match=field):
-        plan_approach(robot, target, replace(LIMITS, **{field: None}), 1.0, 1e-3, UNITS)
+        plan_move(robot, HOME, target, replace(LIMITS, **{field: None}), 1.0, 1e-3, UNITS)
 
 
 def test_it_does_not_take_a_tool_limit_that_it_cannot_keep(robot: Heli4, target: np.ndarray) -> None:
     with pytest.raises(InvalidValue, match="tool_speed"):
-        plan_approach(robot, target, replace(LIMITS, tool_speed=1.0), 1.0, 1e-3, UNITS)
+        plan_move(robot, HOME, target, replace(LIMITS, tool_speed=1.0), 1.0, 1e-3, UNITS)
 
 
 @pytest.mark.parametrize("period", [0.0, math.nan])
 def test_an_impossible_period_is_refused(robot: Heli4, target: np.ndarray, period: float) -> None:
     with pytest.raises(InvalidValue, match="period"):
-        plan_approach(robot, target, LIMITS, 1.0, period, UNITS)
+        plan_move(robot, HOME, target, LIMITS, 1.0, period, UNITS)
 
 
 def test_a_target_out_of_reach_is_refused(robot: Heli4) -> None:
     with pytest.raises(UnreachablePose):
-        plan_approach(robot, np.array([0.0, 0.0, -1.3, 0.0]), LIMITS, 1.0, 1e-3, UNITS)
+        plan_move(robot, HOME, np.array([0.0, 0.0, -1.3, 0.0]), LIMITS, 1.0, 1e-3, UNITS)
 
 
 def test_anything_but_success_is_an_error(robot: Heli4, target: np.ndarray, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -125,7 +137,7 @@ def test_anything_but_success_is_an_error(robot: Heli4, target: np.ndarray, monk
 
     monkeypatch.setattr(module, "Ruckig", Failing)
     with pytest.raises(TimingFailed, match="ErrorExecutionTimeCalculation"):
-        plan_approach(robot, target, LIMITS, 1.0, 1e-3, UNITS)
+        plan_move(robot, HOME, target, LIMITS, 1.0, 1e-3, UNITS)
 
 
 @pytest.mark.parametrize(("spoiled", "what"), [(np.nan, "no pose"), (0.01, "another working mode")])
@@ -137,7 +149,7 @@ def test_a_pose_that_does_not_exist_on_the_way_is_an_error(target: np.ndarray, s
             return pose
 
     with pytest.raises(TimingFailed, match=what):
-        plan_approach(Broken(), target, LIMITS, 1.0, 1e-3, UNITS)
+        plan_move(Broken(), HOME, target, LIMITS, 1.0, 1e-3, UNITS)
 
 
 def test_a_redundant_robot_is_refused(target: np.ndarray) -> None:
@@ -145,4 +157,62 @@ def test_a_redundant_robot_is_refused(target: np.ndarray) -> None:
         joint_names = ("q1", "q2", "q3", "q4", "q5")
 
     with pytest.raises(InvalidValue, match="joints of Redundant"):
-        plan_approach(Redundant(), target, LIMITS, 1.0, 1e-3, UNITS)
+        plan_move(Redundant(), HOME, target, LIMITS, 1.0, 1e-3, UNITS)
+
+
+# Stops
+
+
+@pytest.fixture(scope="module")
+def braking(robot: Heli4, cycle: Cycle) -> list[tuple[np.ndarray, Move]]:
+    """Stops from states all over the way there, where its accelerations are within those of the stop."""
+    motion = cycle.pieces[0].motion
+    tool = motion.at(np.linspace(0.0, motion.duration, 41)[1:-1])
+    states = np.stack(actuator_motion(robot, *tool)[:3], axis=1)
+    able = [state for state in states if np.abs(state[2]).max() < STOPPING.acceleration]
+    return [(state, plan_stop(robot, tuple(state), STOPPING, 1.0, 1e-3, UNITS)) for state in able]
+
+
+STOPPING = Limits(speed=20.0, acceleration=400.0, jerk=1e5)
+
+
+def test_a_stop_goes_from_its_state_to_rest_within_the_limits(braking: list[tuple[np.ndarray, Move]]) -> None:
+    assert len(braking) > 10
+    for (joints, speed, acceleration), stop in braking:
+        points = stop.setpoints
+        assert points.joints[0] == pytest.approx(joints, abs=1e-12)
+        assert points.speed[0] == pytest.approx(speed, abs=1e-12)
+        assert points.acceleration[0] == pytest.approx(acceleration, abs=1e-9)
+        assert np.abs(points.speed[-1]).max() < 1e-9
+        assert np.abs(points.acceleration[-1]).max() < 1e-6
+        assert max(stop.peak_over_limit.values()) <= 1.0 + 1e-9
+
+
+def test_a_stop_that_needs_too_much_torque_is_refused(robot: Heli4, braking: list[tuple[np.ndarray, Move]]) -> None:
+    state, stop = max(braking, key=lambda found: np.abs(found[1].setpoints.torque).max())
+    assert np.abs(stop.setpoints.torque).max() > 127.0
+    with pytest.raises(LimitsExceeded, match="torque"):
+        plan_stop(robot, tuple(state), replace(STOPPING, torque=127.0), 1.0, 1e-3, UNITS)
+
+
+def test_a_stop_takes_as_long_as_its_fastest_joint_needs(robot: Heli4) -> None:
+    """From v at rest in acceleration, v > a^2 / j: the trapezoid's v / a + a / j, in whole periods."""
+    joints = robot.inverse(HOME)
+    limits = Limits(speed=20.0, acceleration=100.0, jerk=1e4)
+    stop = plan_stop(robot, (joints, np.array([2.0, -1.0, 2.0, -1.0]), np.zeros(4)), limits, 1.0, 1e-3, UNITS)
+    exact = 2.0 / 100.0 + 100.0 / 1e4
+    assert exact - 1e-9 <= stop.duration <= exact + 1e-3 + 1e-9
+    travelled = stop.setpoints.joints[-1] - joints
+    assert travelled == pytest.approx(np.array([2.0, -1.0, 2.0, -1.0]) * exact / 2, rel=0.05)
+
+
+def test_a_stop_from_a_state_beyond_the_limits_is_refused(robot: Heli4) -> None:
+    state = (robot.inverse(HOME), np.zeros(4), np.array([300.0, 0.0, 0.0, 0.0]))
+    with pytest.raises((TimingFailed, LimitsExceeded), match=r"ruckig|acceleration"):
+        plan_stop(robot, state, LIMITS, 1.0, 1e-3, UNITS)
+
+
+def test_a_stop_whose_rest_is_out_of_reach_is_refused(robot: Heli4) -> None:
+    state = (robot.inverse(np.array([0.0, 0.0, -1.09, 0.0])), np.full(4, 15.0), np.zeros(4))
+    with pytest.raises(TimingFailed, match=r"no pose|another working mode"):
+        plan_stop(robot, state, replace(LIMITS, torque=None), 1.0, 1e-3, UNITS)

@@ -1,7 +1,7 @@
-"""A jerk-limited approach in joint space, from rest to rest (ruckig); the only module that imports ruckig.
+"""Jerk-limited moves in joint space (ruckig): from pose to pose, and from motion to rest; the only ruckig importer.
 
 Berscheid and Kroeger, "Jerk-limited real-time trajectory generation with arbitrary target states", RSS 2021. One move
-from joints to joints: intermediate waypoints are never used, since this edition of ruckig sends them to a cloud.
+from state to state: intermediate waypoints are never used, since this edition of ruckig sends them to a cloud.
 The pose follows from the forward model, and must exist and come back by the inverse model all along.
 """
 
@@ -9,13 +9,24 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from ruckig import DurationDiscretization, InputParameter, Result, Ruckig, Synchronization, Trajectory
+from ruckig import (
+    ControlInterface,
+    DurationDiscretization,
+    InputParameter,
+    Result,
+    Ruckig,
+    RuckigError,
+    Synchronization,
+    Trajectory,
+)
 
 from kinematics import InvalidValue, Mechanism
 from kinematics.drives import from_actuators, to_actuators
 from kinematics.dynamics import inverse_dynamics
+from kinematics.mechanism import checked
 from kinematics.motion import actuator_motion
 from trajectory.errors import LimitsExceeded, TimingFailed
 from trajectory.limits import Limits
@@ -28,11 +39,11 @@ _SAME_JOINTS = 1e-7  # how far the joints may be from those of their own pose
 
 
 @dataclass(frozen=True, eq=False)
-class Approach:
-    """An approach that was checked.
+class Move:
+    """A move that was checked.
 
     Attributes:
-        setpoints: one a period, from rest to rest.
+        setpoints: one a period; the last one is at rest, and holds.
         duration: a whole number of periods [s].
         peak_over_limit: of the joints' speed, acceleration and jerk, and of the torque where it is limited.
     """
@@ -42,25 +53,25 @@ class Approach:
     peak_over_limit: dict[str, float]
 
 
-def plan_approach(
+def plan_move(
     robot: Mechanism,
+    start: Array,
     target: Array,
     limits: Limits,
     payload: float,
     period: float,
     joint_units: tuple[str, ...],
-    start: Array | None = None,
-) -> Approach:
-    """The fastest jerk-limited move of the joints to a pose, sampled each period.
+) -> Move:
+    """The fastest jerk-limited move of the joints from rest to rest, sampled each period.
 
     Args:
         robot: any mechanism with as many joints as freedoms.
+        start: (n,) the pose to start from, such as the robot's home.
         target: (n,) the pose to reach, such as a cycle's start.
         limits: speed, acceleration and jerk are kept by the plan; torque is checked where given.
         payload: mass at the tool [kg].
         period: of the drives' bus; the duration is a whole number of periods [s].
         joint_units: rad or m for each joint.
-        start: (n,) the pose to start from; the robot's home when None.
 
     Raises:
         InvalidValue: a redundant robot, no acceleration or jerk limit, a tool limit, or an impossible period.
@@ -69,52 +80,103 @@ def plan_approach(
         LimitsExceeded: a limit is broken on the way.
     """
     _require_usable(robot, limits, period)
-    ends = np.stack([np.asarray(robot.home if start is None else start, dtype=float), np.asarray(target, dtype=float)])
+    ends = np.stack([np.asarray(start, dtype=float), np.asarray(target, dtype=float)])
     robot.require_reachable(ends)
     joints = to_actuators(robot, robot.inverse(ends))
-    asked = {**limits.as_dict(), "period": period, "start": ends[0].tolist(), "target": ends[1].tolist()}
-    plan = _plan(joints, limits, period, asked)
+    given = _input(limits, joints.shape[1])
+    given.current_position, given.target_position = joints[0].tolist(), joints[1].tolist()
+    asked = {"start": ends[0].tolist(), "target": ends[1].tolist()}
+    return _move(robot, given, limits, payload, period, joint_units, asked)
+
+
+def plan_stop(
+    robot: Mechanism,
+    state: tuple[Array, Array, Array],
+    limits: Limits,
+    payload: float,
+    period: float,
+    joint_units: tuple[str, ...],
+) -> Move:
+    """The fastest jerk-limited stop of the joints, wherever that is; it leaves the path (`emergency_stop` does not).
+
+    Args:
+        robot, limits, payload, period, joint_units: as for `plan_move`.
+        state: (m,) positions, speeds and accelerations of the actuators when the stop starts.
+
+    Raises:
+        As `plan_move`; TimingFailed too where the state itself is beyond a limit, or no rest can be reached.
+    """
+    _require_usable(robot, limits, period)
+    position, speed, acceleration = (checked(v, "state", robot.actuator_names).tolist() for v in state)
+    given = _input(limits, len(position))
+    given.control_interface = ControlInterface.Velocity
+    given.current_position, given.current_velocity, given.current_acceleration = position, speed, acceleration
+    asked = {"state": {"joints": position, "speed": speed, "acceleration": acceleration}}
+    return _move(robot, given, limits, payload, period, joint_units, asked)
+
+
+def _input(limits: Limits, count: int) -> InputParameter:
+    """At rest, within the limits; where from and where to is left to fill in."""
+    given = InputParameter(count)
+    given.max_velocity = _needed(limits, "speed", count)
+    given.max_acceleration = _needed(limits, "acceleration", count)
+    given.max_jerk = _needed(limits, "jerk", count)
+    given.duration_discretization = DurationDiscretization.Discrete
+    given.synchronization = Synchronization.Phase  # a straight line of the joints: apart, they would spin the tool
+    return given
+
+
+def _move(
+    robot: Mechanism,
+    given: InputParameter,
+    limits: Limits,
+    payload: float,
+    period: float,
+    joint_units: tuple[str, ...],
+    asked: dict[str, Any],
+) -> Move:
+    """Plan, check between the periods and sample; `asked` goes into the header and into errors."""
+    wanted = {**limits.as_dict(), "period": period, **asked}
+    plan = _plan(given, period, wanted)
     count = max(1, round(plan.duration / period))  # a period at rest where the target is the start
     if plan.duration > 0.0 and abs(count * period - plan.duration) > _ROUNDING * period:
-        raise TimingFailed("ruckig", asked, f"{plan.duration} s is no whole number of periods")
+        raise TimingFailed("ruckig", wanted, f"{plan.duration} s is no whole number of periods")
     times = np.round(np.arange(count * PARTS + 1) * (period / PARTS), 12)
     dense = _samples(plan, np.minimum(times, plan.duration))
-    pose = _poses(robot, dense[0], times, asked)
+    pose = _poses(robot, dense[0], times, wanted)
     torque = _torque(robot, payload, pose, dense)
     found = _peaks(dense, torque, limits, period / PARTS)
     over = {name: value for name, value in found.items() if not value <= 1.0 + _ROUNDING}
     if over:
         raise LimitsExceeded(over, 1.0)
     table = np.concatenate([times[:, None], pose, *dense, torque], axis=1)[::PARTS]
-    header = robot_header(robot, limits) | {"laws": ["ruckig"], "payload [kg]": payload}
-    header |= {"start": ends[0].tolist(), "target": ends[1].tolist(), "period [s]": float(period), "periods": [count]}
-    setpoints = Setpoints.of_table(table, robot.actuator_names, joint_units, header)
-    return Approach(setpoints, count * period, found)
+    header = robot_header(robot, limits) | {"laws": ["ruckig"], "payload [kg]": payload} | asked
+    header |= {"period [s]": float(period), "periods": [count]}
+    return Move(Setpoints.of_table(table, robot.actuator_names, joint_units, header), count * period, found)
 
 
 def _require_usable(robot: Mechanism, limits: Limits, period: float) -> None:
     if len(robot.joint_names) != len(robot.pose_names):
         expected = f"{len(robot.pose_names)}, as many as freedoms: redundant joints cannot move freely of each other"
-        raise InvalidValue(f"joints of {type(robot).__name__} for an approach", len(robot.joint_names), expected)
+        raise InvalidValue(
+            f"joints of {type(robot).__name__} for a move of the joints", len(robot.joint_names), expected
+        )
     for name in ("tool_speed", "tool_acceleration"):
         if getattr(limits, name) is not None:
-            raise InvalidValue(f"Limits {name} for an approach", getattr(limits, name), "None: it moves the joints")
+            raise InvalidValue(
+                f"Limits {name} for a move of the joints", getattr(limits, name), "None: it moves the joints"
+            )
     if not (math.isfinite(period) and period > 0.0):
         raise InvalidValue("period", period, "a finite time > 0 s")
 
 
-def _plan(joints: Array, limits: Limits, period: float, asked: dict[str, object]) -> Trajectory:
-    """(2, m) first and last joints -> the trajectory."""
-    count = joints.shape[1]
-    given = InputParameter(count)
-    given.current_position, given.target_position = joints[0].tolist(), joints[1].tolist()
-    given.max_velocity = _needed(limits, "speed", count)
-    given.max_acceleration = _needed(limits, "acceleration", count)
-    given.max_jerk = _needed(limits, "jerk", count)
-    given.duration_discretization = DurationDiscretization.Discrete
-    given.synchronization = Synchronization.Phase  # a straight line of the joints: apart, they would spin the tool
+def _plan(given: InputParameter, period: float, asked: dict[str, object]) -> Trajectory:
+    count = given.degrees_of_freedom
     plan = Trajectory(count)
-    result = Ruckig(count, period).calculate(given, plan)
+    try:
+        result = Ruckig(count, period).calculate(given, plan)
+    except RuckigError as error:
+        raise TimingFailed("ruckig", asked, str(error)) from error
     if result not in (Result.Working, Result.Finished):
         raise TimingFailed("ruckig", asked, f"no solution ({Result(result).name})")
     return plan
@@ -123,7 +185,7 @@ def _plan(joints: Array, limits: Limits, period: float, asked: dict[str, object]
 def _needed(limits: Limits, name: str, count: int) -> list[float]:
     limit = limits.of_joints(name, count)
     if limit is None:
-        raise InvalidValue(f"Limits {name} for an approach", None, "a limit: a jerk-limited move needs it")
+        raise InvalidValue(f"Limits {name} for a move of the joints", None, "a limit: a jerk-limited move needs it")
     return [float(v) for v in limit]
 
 
