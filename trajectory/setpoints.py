@@ -13,7 +13,7 @@ from kinematics import InvalidShape, InvalidValue, Mechanism
 from kinematics.drives import from_actuators
 from kinematics.motion import actuator_motion
 from trajectory.cycle import Cycle, Piece, periods_of
-from trajectory.interpolation import PARTS, between_setpoints, interpolants
+from trajectory.interpolation import PARTS, between_setpoints
 from trajectory.limits import Limits
 from trajectory.motion import Motion, motion_of
 from trajectory.path import POSE_NAMES, Array
@@ -163,8 +163,8 @@ def _between(cycle: Cycle, counts: Sequence[int], setpoints: Setpoints) -> dict[
         rows = np.arange(count)[:, None] * PARTS + np.arange(PARTS + 1)
         parts.append([v[rows] for v in actuator_motion(cycle.robot, *piece.motion.at(times))[:3]])
     exact = [np.concatenate(v) for v in zip(*parts, strict=True)]
-    curves = interpolants(setpoints.time, setpoints.joints, setpoints.speed, setpoints.acceleration)
-    return between_setpoints(curves, exact, setpoints.joint_units, cycle.limits)
+    given = (setpoints.time, setpoints.joints, setpoints.speed, setpoints.acceleration)
+    return between_setpoints(given, exact, setpoints.joint_units, cycle.limits)
 
 
 def robot_header(robot: Mechanism, limits: Limits) -> dict[str, Any]:
