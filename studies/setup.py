@@ -95,25 +95,30 @@ def drive_of(drive: schema.Drive) -> Drive:
 
 
 def require_drive_files(study: Study, file: Path) -> None:
-    """Write the drive files of both ends of the cycle to nowhere, before hours of work go into the real ones.
+    """Write the drive files of the cycle's path to nowhere, before hours of work go into the real ones.
 
     Raises:
         StudyError: a format cannot say what the study asks for.
     """
     asked = study.trajectory
-    if asked is None or set(asked.files) == {"csv"}:
+    if asked is None:
         return
-    robot, path = robot_of(study), cycle_of(asked.cycle)
-    (poses,) = path.evaluate(np.array([0.0, path.length]), 0)
-    joints = np.nan_to_num(to_actuators(robot, robot.inverse(poses)))
-    table = np.hstack([[[0.0], [asked.period]], poses, joints, np.zeros((2, 3 * joints.shape[1]))])
-    header = {"period [s]": asked.period, "periods": [1]}
-    ends = Setpoints.of_table(table, robot.actuator_names, robot.actuator_units, header)
     try:
-        drive_files("cycle", ends, asked.files, drive_of(asked.drive))
+        drive = drive_of(asked.drive)
+        if set(asked.files) != {"csv"}:
+            drive_files("cycle", _along(robot_of(study), cycle_of(asked.cycle), asked.period), asked.files, drive)
     except InvalidValue as error:
         problem = read_toml(file).problem(("trajectory", "files"), f"{error.what} {error.found}", error.expected)
         raise StudyError([problem]) from error
+
+
+def _along(robot: Mechanism, path: AdeptCycle, period: float) -> Setpoints:
+    """Set-points at rest all along the path; zero where a limb cannot reach, which is told elsewhere."""
+    (poses,) = path.evaluate(np.linspace(0.0, path.length, 101), 0)
+    joints = np.nan_to_num(to_actuators(robot, robot.inverse(poses)))
+    table = np.hstack([np.arange(101)[:, None] * period, poses, joints, np.zeros((101, 3 * joints.shape[1]))])
+    header = {"period [s]": period, "periods": [100]}
+    return Setpoints.of_table(table, robot.actuator_names, robot.actuator_units, header)
 
 
 def limits_of(limits: schema.Limits) -> Limits:

@@ -75,11 +75,15 @@ def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: L
         payload: mass at the tool [kg].
 
     Raises:
-        InvalidValue: a start at which there is no motion.
+        InvalidValue: a start at which there is no motion, or nothing that limits the braking.
         LimitsExceeded: the stop breaks a limit, as where the motion already does.
     """
     if not 0.0 < start < timed.duration:
         raise InvalidValue("start of an emergency stop", start, f"inside (0, {timed.duration:.6g}) s")
+    if limits.acceleration is limits.torque is limits.tool_acceleration is None:
+        raise InvalidValue(
+            "Limits for an emergency stop", limits.as_dict(), "acceleration, torque or tool_acceleration"
+        )
     rest = _pace(robot, timed, np.linspace(start, timed.duration, COARSE + 1), limits, payload)[0][-1]
     tau, pace = _pace(robot, timed, _steps(timed, start, rest), limits, payload)
     motion = PacedMotion(timed, TimeLaw.constant_acceleration("emergency stop", tau, pace))
@@ -92,11 +96,11 @@ def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: L
 
 def _steps(timed: TimedMotion, start: float, rest: float) -> Array:
     """Times from the start to the end of the motion: its knots, and more between where it is about to be at rest."""
-    later = timed.times[timed.times > start * (1 + 1e-12)]
-    even = np.linspace(start, rest, STEPS + 1)
-    # an even step that is almost a knot would leave a step of rounding's size
+    least = 1e-3 * (rest - start) / STEPS  # a shorter step would be rounding's
+    later = timed.times[timed.times > start + least]
+    even = np.linspace(start, rest, STEPS + 1)[1:]
     apart = np.abs(even[:, None] - later[np.searchsorted(later, even).clip(1, later.size - 1)[:, None] + [-1, 0]])
-    return np.union1d(even[apart.min(axis=1) > 1e-3 * (rest - start) / STEPS], later)
+    return np.concatenate([[start], np.union1d(even[apart.min(axis=1) > least], later)])
 
 
 def _pace(robot: Mechanism, timed: TimedMotion, knots: Array, limits: Limits, payload: float) -> tuple[Array, Array]:

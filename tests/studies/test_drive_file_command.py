@@ -64,7 +64,7 @@ def test_the_command_line_s_formats_take_the_study_s_place(tmp_path: Path) -> No
         (SMALL, ["--format", "cia402"], "increments"),
         (asking('["pmac"]', DRIVE.replace("'A'", "'joint'")), [], "letters out of X Y Z"),
         (asking('["zaber"]', DRIVE.replace(", 'A'", "")), [], "4 names, one an actuator"),
-        (asking('["cia402"]', DRIVE.replace("gear = 9", "gear = 0")), [], "other than 0"),
+        (asking('["csv"]', DRIVE.replace("gear = 9", "gear = 0")), [], "other than 0"),
         (asking('["cia402"]', DRIVE.replace("gear = 9", "gear = 90000")), [], "-2147483648 to 2147483647"),
         (asking('["pmac"]').replace("0.002", "0.0004"), [], "1/4096 ms"),
     ],

@@ -32,7 +32,9 @@ def stops(robot: Heli4, cycle: Cycle, limits: Limits) -> list[tuple[TimedMotion,
     """From instants all over the way there and some of the way back, at the knots of the law and its corners too."""
     there, back = (piece.motion for piece in cycle.pieces)
     corners = np.interp(there.path.knots[1:-1], there.law.position, there.law.times)
-    at = [*np.linspace(0.0, there.duration, COUNT - 8)[1:-1], *corners, *there.times[[1, -2]], 1e-6 * there.duration]
+    knots = there.times[[1, 700, -2]]
+    at = [*np.linspace(0.0, there.duration, COUNT - 8)[1:-1], *corners, *knots, knots[1] * (1 - 1e-10)]
+    at += [1e-6 * there.duration, (1 - 1e-6) * there.duration]
     found = [(there, emergency_stop(robot, there, t, limits, 1.0)) for t in at]
     return found + [(back, emergency_stop(robot, back, f * back.duration, limits, 1.0)) for f in (0.3, 0.5, 0.7)]
 
@@ -116,6 +118,12 @@ def test_a_motion_that_is_over_its_limits_cannot_be_stopped_within_them(robot: H
     motion = cycle.pieces[0].motion
     with pytest.raises(LimitsExceeded, match="torque"):
         emergency_stop(robot, motion, 0.6 * motion.duration, replace(cycle.limits, torque=60.0), 1.0)
+
+
+def test_what_nothing_limits_cannot_be_braked(robot: Heli4, cycle: Cycle) -> None:
+    motion = cycle.pieces[0].motion
+    with pytest.raises(InvalidValue, match="acceleration, torque or tool_acceleration"):
+        emergency_stop(robot, motion, 0.5 * motion.duration, Limits(speed=20.0, jerk=1e5), 1.0)
 
 
 @pytest.mark.parametrize("share", [0.0, 1.0, -0.1, np.nan])
