@@ -109,13 +109,12 @@ def trajectory(
     from studies import console
     from studies.outputs import write_setpoints
     from studies.pipeline import time_cycle
-    from trajectory.drive_files import FORMATS
+    from trajectory.drive_files import format_named
 
     if formats and out is None:
         raise InvalidValue("--format", ", ".join(formats), "--out with it, the folder for the files")
     for name in formats or ():
-        if name not in FORMATS:
-            raise InvalidValue("--format", name, f"one of {', '.join(FORMATS)}")
+        format_named(name)
     asked = _load(study, formats)
     if asked.trajectory is None:
         raise InvalidValue(f"study {asked.name}", "no [trajectory] table", "one with the cycle to time")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields
 
 import numpy as np
 
@@ -66,10 +66,6 @@ class Limits:
         if isinstance(value, tuple) and len(value) != count:
             raise InvalidValue(f"Limits {name}", value, f"one number or {count}, one a joint")
         return np.broadcast_to(np.asarray(value, dtype=float), (count,)).copy()
-
-    def without_jerk(self) -> Limits:
-        """The same but for the jerk, which nothing limits."""
-        return replace(self, jerk=None)
 
     def as_dict(self) -> dict[str, object]:
         """The limits that are set; a list for one a joint."""

@@ -60,7 +60,7 @@ def test_the_command_line_s_formats_take_the_study_s_place(tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("text", "arguments", "says"),
     [
-        (SMALL, ["--format", "rso2"], "--format: found rso2; expected one of csv, ros2"),
+        (SMALL, ["--format", "rso2"], "found rso2; expected one of csv (all of each set-point, SI), ros2 (ROS 2"),
         (SMALL, ["--format", "cia402"], "increments"),
         (asking('["pmac"]', DRIVE.replace("'A'", "'joint'")), [], "letters out of X Y Z"),
         (asking('["zaber"]', DRIVE.replace(", 'A'", "")), [], "4 names, one an actuator"),

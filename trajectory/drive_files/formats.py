@@ -60,7 +60,17 @@ def drive_files(
     setpoints.require_finite()
     files: dict[str, str | bytes] = {}
     for name in formats:
-        if name not in FORMATS:
-            raise InvalidValue("format of a drive file", name, f"one of {', '.join(FORMATS)}")
-        files |= FORMATS[name].write(stem, setpoints, drive or Drive())
+        files |= format_named(name).write(stem, setpoints, drive or Drive())
     return files
+
+
+def format_named(name: str) -> Format:
+    """One of `FORMATS`.
+
+    Raises:
+        InvalidValue: there is none of this name; all are listed.
+    """
+    if name not in FORMATS:
+        known = ", ".join(f"{known} ({form.title})" for known, form in FORMATS.items())
+        raise InvalidValue("format of a drive file", name, f"one of {known}")
+    return FORMATS[name]

@@ -26,7 +26,8 @@ def write(stem: str, setpoints: Setpoints, drive: Drive) -> dict[str, str | byte
     names = _letters(setpoints, drive)
     period = _milliseconds(setpoints.header["period [s]"])
     needs = "any PMAC" if "." not in period else "a Turbo PMAC with I42 = 0"
-    start = [f"{name}{decimal(v)}" for name, v in zip(names, in_degrees_or_mm(setpoints)[0][0], strict=True)]
+    position, speed = in_degrees_or_mm(setpoints)
+    start = [f"{name}{decimal(v)}" for name, v in zip(names, position[0], strict=True)]
     program = {
         "axes": list(names),
         "axis units": unit_names(setpoints),
@@ -34,7 +35,7 @@ def write(stem: str, setpoints: Setpoints, drive: Drive) -> dict[str, str | byte
     }
     lines = [*header_lines(setpoints.header, ";"), *header_lines(program, ";")]
     lines += ["CLOSE", "OPEN PROG 1 CLEAR", "ABS", f"PVT{period}"]
-    for row in list(zip(*in_degrees_or_mm(setpoints), strict=True))[1:]:
+    for row in zip(position[1:], speed[1:], strict=True):
         lines.append(" ".join(f"{n}{decimal(p)}:{decimal(v)}" for n, p, v in zip(names, *row, strict=True)))
     return {f"{stem}.pmac": "\n".join([*lines, "CLOSE"]) + "\n"}
 
