@@ -72,7 +72,7 @@ def _reciprocals(graph: Graph) -> list[Node]:
 
 def _fused(nodes: list[Node], outputs: dict[int, int]) -> list[Node]:
     """What serves one sum, product or factor alone is taken into it."""
-    order = sorted(_needed(nodes, outputs), key=lambda n: n)
+    order = sorted(n for n in _needed(nodes, outputs) if _operands(nodes[n]))
     uses = Counter(outputs.values())
     for n in order:
         uses.update(_operands(nodes[n]))

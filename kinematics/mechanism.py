@@ -28,6 +28,7 @@ from kinematics.model import Model, model_of
 
 Array = np.ndarray
 Build = tuple[list[ca.SX], list[ca.SX]]  # inputs and outputs of a program
+_SLICE = 8192  # poses whose matrices are in memory at once
 
 
 class Mechanism(Definition):
@@ -118,11 +119,18 @@ class Mechanism(Definition):
     def condition_number(self, pose: Array, characteristic_length: float | None = None) -> Array:
         """(...,) 2-norm condition number of J_mw at the actuators; inf on a singularity, NaN out of reach."""
         length = self._length(characteristic_length)
-        (j_mw,) = self._evaluate(("homogeneous", length), lambda model: [self._homogeneous(model, length)], pose)
-        good = np.isfinite(j_mw).all(axis=(-2, -1))
-        result = np.where(np.isnan(j_mw).any(axis=(-2, -1)), np.nan, np.inf)
-        result[good] = np.linalg.cond(j_mw[good])
-        return result
+        pose = self._poses(pose)
+        flat = pose.reshape(-1, pose.shape[-1])
+        result = np.empty(len(flat))
+        for first in range(0, len(flat), _SLICE):
+            part = slice(first, first + _SLICE)
+            (j_mw,) = self._evaluate(
+                ("homogeneous", length), lambda model: [self._homogeneous(model, length)], flat[part]
+            )
+            good = np.isfinite(j_mw).all(axis=(-2, -1))
+            result[part] = np.where(np.isnan(j_mw).any(axis=(-2, -1)), np.nan, np.inf)
+            result[part][good] = np.linalg.cond(j_mw[good])
+        return result.reshape(pose.shape[:-1])
 
     def margin(
         self, name: str, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None
