@@ -19,7 +19,7 @@ from design.errors import InvalidRegion
 Array = np.ndarray
 Interval = float | tuple[float, float]
 _ROUNDING = 1e-12  # m or rad
-CHUNK = 1 << 16  # poses: a few megabytes, and enough for all threads
+CHUNK = 1 << 15  # poses: enough for all threads, and a chunk stays in the second cache
 
 
 def unit_grid(counts: Sequence[int], chunk: int = CHUNK) -> Iterator[Array]:
@@ -30,8 +30,9 @@ def unit_grid(counts: Sequence[int], chunk: int = CHUNK) -> Iterator[Array]:
         place = np.arange(first, min(first + chunk, total))
         unit = np.empty((len(place), len(axes)))
         for column in reversed(range(len(axes))):
-            place, along = np.divmod(place, len(axes[column]))
-            unit[:, column] = axes[column][along]
+            above = place // len(axes[column])  # far faster than divmod
+            unit[:, column] = axes[column][place - above * len(axes[column])]
+            place = above
         yield unit
 
 
