@@ -91,7 +91,7 @@ def _kernel(code, constant, work_size, blank, table, out):  # type: ignore[no-un
             _blank(table[first : first + size], out[first : first + size])
 
 
-@numba.njit(**_OPTIONS, inline="never")
+@numba.njit(**_OPTIONS)
 def _blank(table, out):  # type: ignore[no-untyped-def]
     for i in range(table.shape[0]):
         lost = False
@@ -103,88 +103,107 @@ def _blank(table, out):  # type: ignore[no-untyped-def]
             out[i, :] = np.nan
 
 
-@numba.njit(**_OPTIONS, inline="never")
+@numba.njit(**_OPTIONS)
 def _block(code, constant, work, out):  # type: ignore[no-untyped-def]
-    """All instructions over one block; numba turns each loop into vector code."""
+    """All instructions over one block.
+
+    Rows are named by number: a view of a row would be counted in and out, at a higher cost than the row's arithmetic.
+    """
     for n in range(code.shape[0]):
         op = code[n, 0]
         # Unsigned, so that no index needs a test for counting from the end.
         x, y, u, v = np.uint64(code[n, 1]), np.uint64(code[n, 2]), np.uint64(code[n, 3]), np.uint64(code[n, 4])
         r = np.uint64(code[n, 5])
-        k, c = constant[n, 0], constant[n, 1]
-        if op == OUTPUT:
+        if op >= SCALE:
+            _fused(op, constant[n, 0], constant[n, 1], work, x, y, u, v, r)
+        elif op == OUTPUT:
             for i in range(out.shape[0]):
                 out[i, r] = work[x, i]
-            continue
-        if op == PRODUCT_SUM:
-            if k == 1.0 and c == 1.0:
-                for i in range(BLOCK):
-                    work[r, i] = work[x, i] * work[y, i] + work[u, i]
-            elif k == -1.0 and c == 1.0:
-                for i in range(BLOCK):
-                    work[r, i] = work[u, i] - work[x, i] * work[y, i]
-            else:
-                for i in range(BLOCK):
-                    work[r, i] = k * (work[x, i] * work[y, i]) + c * work[u, i]
-        elif op == TWO_PRODUCTS:
-            if k == 1.0 and c == 1.0:
-                for i in range(BLOCK):
-                    work[r, i] = work[x, i] * work[y, i] + work[u, i] * work[v, i]
-            elif k == 1.0 and c == -1.0:
-                for i in range(BLOCK):
-                    work[r, i] = work[x, i] * work[y, i] - work[u, i] * work[v, i]
-            else:
-                for i in range(BLOCK):
-                    work[r, i] = k * (work[x, i] * work[y, i]) + c * (work[u, i] * work[v, i])
-        elif op == PRODUCT:
-            if k == 1.0:
-                for i in range(BLOCK):
-                    work[r, i] = work[x, i] * work[y, i]
-            else:
-                for i in range(BLOCK):
-                    work[r, i] = k * (work[x, i] * work[y, i])
-        elif op == SUM:
-            for i in range(BLOCK):
-                work[r, i] = k * work[x, i] + c * work[y, i]
-        elif op == AFFINE:
-            for i in range(BLOCK):
-                work[r, i] = k * work[x, i] + c
-        elif op == PRODUCT_AFFINE:
-            for i in range(BLOCK):
-                work[r, i] = k * (work[x, i] * work[y, i]) + c
-        elif op == SCALE:
-            for i in range(BLOCK):
-                work[r, i] = k * work[x, i]
-        elif op == INV:
-            for i in range(BLOCK):
-                work[r, i] = 1.0 / work[x, i]
-        elif op == SQRT:
-            for i in range(BLOCK):
-                work[r, i] = np.sqrt(work[x, i])
-        elif op == DIV:
-            for i in range(BLOCK):
-                work[r, i] = work[x, i] / work[y, i]
-        elif op == FMIN:
-            for i in range(BLOCK):
-                a, b = work[x, i], work[y, i]
-                work[r, i] = a if a < b or a != a else b
-        elif op == FMAX:
-            for i in range(BLOCK):
-                a, b = work[x, i], work[y, i]
-                work[r, i] = a if a > b or a != a else b
-        elif op == FABS:
-            for i in range(BLOCK):
-                work[r, i] = abs(work[x, i])
-        elif op in (SIN, COS):
-            _sine(op, work, x, r)
         elif op == CONST:
             for i in range(BLOCK):
-                work[r, i] = k
+                work[r, i] = constant[n, 0]
+        elif op in (SIN, COS):
+            _sine(op, work, x, r)
         else:
-            _apply_rare(op, work, x, y, r)
+            _plain(op, work, x, y, r)
 
 
-@numba.njit(**_OPTIONS, inline="never")
+@numba.njit(**_OPTIONS, inline="always")
+def _fused(op, k, c, work, x, y, u, v, r):  # type: ignore[no-untyped-def]
+    """Numba turns each loop into vector code; factors of +-1 are frequent enough to be spared."""
+    if op == PRODUCT_SUM:
+        if k == 1.0 and c == 1.0:
+            for i in range(BLOCK):
+                work[r, i] = work[x, i] * work[y, i] + work[u, i]
+        elif k == -1.0 and c == 1.0:
+            for i in range(BLOCK):
+                work[r, i] = work[u, i] - work[x, i] * work[y, i]
+        else:
+            for i in range(BLOCK):
+                work[r, i] = k * (work[x, i] * work[y, i]) + c * work[u, i]
+    elif op == TWO_PRODUCTS:
+        if k == 1.0 and c == 1.0:
+            for i in range(BLOCK):
+                work[r, i] = work[x, i] * work[y, i] + work[u, i] * work[v, i]
+        elif k == 1.0 and c == -1.0:
+            for i in range(BLOCK):
+                work[r, i] = work[x, i] * work[y, i] - work[u, i] * work[v, i]
+        else:
+            for i in range(BLOCK):
+                work[r, i] = k * (work[x, i] * work[y, i]) + c * (work[u, i] * work[v, i])
+    elif op == PRODUCT:
+        if k == 1.0:
+            for i in range(BLOCK):
+                work[r, i] = work[x, i] * work[y, i]
+        else:
+            for i in range(BLOCK):
+                work[r, i] = k * (work[x, i] * work[y, i])
+    elif op == SUM:
+        for i in range(BLOCK):
+            work[r, i] = k * work[x, i] + c * work[y, i]
+    elif op == AFFINE:
+        for i in range(BLOCK):
+            work[r, i] = k * work[x, i] + c
+    elif op == PRODUCT_AFFINE:
+        for i in range(BLOCK):
+            work[r, i] = k * (work[x, i] * work[y, i]) + c
+    elif op == SCALE:
+        for i in range(BLOCK):
+            work[r, i] = k * work[x, i]
+    else:
+        for i in range(BLOCK):
+            work[r, i] = np.nan
+
+
+@numba.njit(**_OPTIONS, inline="always")
+def _plain(op, work, x, y, r):  # type: ignore[no-untyped-def]
+    """What the graph leaves of CasADi's own operations, the frequent ones as vector code."""
+    if op == INV:
+        for i in range(BLOCK):
+            work[r, i] = 1.0 / work[x, i]
+    elif op == SQRT:
+        for i in range(BLOCK):
+            work[r, i] = np.sqrt(work[x, i])
+    elif op == DIV:
+        for i in range(BLOCK):
+            work[r, i] = work[x, i] / work[y, i]
+    elif op == FMIN:  # NaN comes through from either side
+        for i in range(BLOCK):
+            a, b = work[x, i], work[y, i]
+            work[r, i] = a if a < b or a != a else b
+    elif op == FMAX:
+        for i in range(BLOCK):
+            a, b = work[x, i], work[y, i]
+            work[r, i] = a if a > b or a != a else b
+    elif op == FABS:
+        for i in range(BLOCK):
+            work[r, i] = abs(work[x, i])
+    else:
+        for i in range(BLOCK):
+            work[r, i] = _rare(op, work[x, i], work[y, i])
+
+
+@numba.njit(**_OPTIONS)
 def _sine(op, work, x, r):  # type: ignore[no-untyped-def]
     quarters = 1.0 if op == COS else 0.0
     for i in range(BLOCK):
@@ -194,51 +213,47 @@ def _sine(op, work, x, r):  # type: ignore[no-untyped-def]
             work[r, i] = np.cos(work[x, i]) if op == COS else np.sin(work[x, i])
 
 
-@numba.njit(**_OPTIONS, inline="never")
-def _apply_rare(op, work, x, y, r):  # type: ignore[no-untyped-def]
+@numba.njit(**_OPTIONS)
+def _rare(op, a, b):  # type: ignore[no-untyped-def]
     """The operations that cost a library call or are seldom seen, item by item."""
-    for i in range(BLOCK):
-        a, b = work[x, i], work[y, i]
-        if op == ADD:
-            v = a + b
-        elif op == SUB:
-            v = a - b
-        elif op == MUL:
-            v = a * b
-        elif op == SQ:
-            v = a * a
-        elif op == NEG:
-            v = -a
-        elif op == TWICE:
-            v = a + a
-        elif op == ASSIGN:
-            v = a
-        elif op == ATAN2:
-            v = np.arctan2(a, b)
-        elif op == ATAN:
-            v = np.arctan(a)
-        elif op == ACOS:
-            v = np.arccos(a)
-        elif op == ASIN:
-            v = np.arcsin(a)
-        elif op == TAN:
-            v = np.tan(a)
-        elif op == EXP:
-            v = np.exp(a)
-        elif op == LOG:
-            v = np.log(a)
-        elif op == POW:
-            v = a**b
-        elif op == SIGN:
-            v = np.sign(a)
-        elif op == LT:
-            v = 1.0 if a < b else 0.0
-        elif op == LE:
-            v = 1.0 if a <= b else 0.0
-        elif op == NOT:
-            v = 1.0 if a == 0.0 else 0.0
-        elif op == IF_ELSE_ZERO:
-            v = b if a != 0.0 else 0.0
-        else:
-            v = np.nan
-        work[r, i] = v
+    if op == ADD:
+        return a + b
+    if op == SUB:
+        return a - b
+    if op == MUL:
+        return a * b
+    if op == SQ:
+        return a * a
+    if op == NEG:
+        return -a
+    if op == TWICE:
+        return a + a
+    if op == ASSIGN:
+        return a
+    if op == ATAN2:
+        return np.arctan2(a, b)
+    if op == ATAN:
+        return np.arctan(a)
+    if op == ACOS:
+        return np.arccos(a)
+    if op == ASIN:
+        return np.arcsin(a)
+    if op == TAN:
+        return np.tan(a)
+    if op == EXP:
+        return np.exp(a)
+    if op == LOG:
+        return np.log(a)
+    if op == POW:
+        return a**b
+    if op == SIGN:
+        return np.sign(a)
+    if op == LT:
+        return 1.0 if a < b else 0.0
+    if op == LE:
+        return 1.0 if a <= b else 0.0
+    if op == NOT:
+        return 1.0 if a == 0.0 else 0.0
+    if op == IF_ELSE_ZERO:
+        return b if a != 0.0 else 0.0
+    return np.nan
