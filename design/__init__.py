@@ -7,6 +7,7 @@ from design.region import Box, Cylinder, Region
 from design.replay import replay
 from design.requirement import Bounds, Requirement, SumLimit
 from design.search import WorstPoses, worst_poses
+from design.sweep import Sweep, sweep
 
 __all__ = [
     "BestBound",
@@ -20,6 +21,7 @@ __all__ = [
     "Region",
     "Requirement",
     "SumLimit",
+    "Sweep",
     "SynthesisFailed",
     "WorstPoses",
     "best_bound",
@@ -27,5 +29,6 @@ __all__ = [
     "load_certificate",
     "replay",
     "save_certificate",
+    "sweep",
     "worst_poses",
 ]

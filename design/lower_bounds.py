@@ -14,6 +14,7 @@ import numpy as np
 from design.claims import Numbers, claims_of
 from design.region import Region
 from kinematics import FviBounds, Mechanism
+from kinematics.block_program import BlockProgram
 from kinematics.box_program import BoxProgram
 from kinematics.errors import InvalidValue
 from kinematics.interpreter import bulk, evaluate
@@ -113,7 +114,7 @@ class LowerBounds:
         return np.swapaxes(result, -1, -2).reshape(len(middle), self._size**2)
 
 
-def _plain_program(robot: Mechanism, matrix: ca.SX, numbers: Numbers, fixed: list[float]) -> Program:
+def _plain_program(robot: Mechanism, matrix: ca.SX, numbers: Numbers, fixed: list[float]) -> BlockProgram:
     model = robot.model()
     symbols = ca.vertcat(model.geometry, numbers.vector)
     matrix = ca.substitute(matrix, symbols, ca.SX(fixed))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import product
 from numbers import Real
 
@@ -19,6 +19,21 @@ from design.errors import InvalidRegion
 Array = np.ndarray
 Interval = float | tuple[float, float]
 _ROUNDING = 1e-12  # m or rad
+CHUNK = 1 << 15  # poses: enough for all threads, and a chunk stays in the second cache
+
+
+def unit_grid(counts: Sequence[int], chunk: int = CHUNK) -> Iterator[Array]:
+    """(k, d) points of a regular grid of the unit cube, k <= chunk at a time; the last coordinate runs fastest."""
+    axes = [np.linspace(0.0, 1.0, c) if c > 1 else np.array([0.5]) for c in counts]
+    total = math.prod(counts)
+    for first in range(0, total, chunk):
+        place = np.arange(first, min(first + chunk, total))
+        unit = np.empty((len(place), len(axes)))
+        for column in reversed(range(len(axes))):
+            above = place // len(axes[column])  # far faster than divmod
+            unit[:, column] = axes[column][place - above * len(axes[column])]
+            place = above
+        yield unit
 
 
 class Region(ABC):
@@ -61,9 +76,11 @@ class Region(ABC):
 
     def grid(self, names: Sequence[str], counts: Sequence[int]) -> Array:
         """(prod counts, n) poses on a regular grid of the unit cube, its faces included."""
-        axes = [np.linspace(0.0, 1.0, c) if c > 1 else np.array([0.5]) for c in counts]
-        unit = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, self.dimension)
-        return self.from_unit(unit, names)
+        return np.concatenate(list(self.walk(names, counts)))
+
+    def walk(self, names: Sequence[str], counts: Sequence[int], chunk: int = CHUNK) -> Iterator[Array]:
+        """The poses of `grid` in its order, (k, n) with k <= chunk at a time, so that no list of them is in memory."""
+        return (self.from_unit(unit, names) for unit in unit_grid(counts, chunk))
 
     def spread(self, names: Sequence[str]) -> Array:
         """(k, n) few distinct poses that reach every side of the region, corners and middle included."""

@@ -7,11 +7,11 @@ grid's. The answer is still a sample's, an upper bound of the true worst, and it
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 
-from design.region import Region
+from design.region import Region, unit_grid
+from design.sweep import sweep
 from kinematics import FviBounds, Mechanism
 
 Array = np.ndarray
@@ -80,29 +80,13 @@ def worst_poses(
     if region.dimension == 0:
         pose = region.from_unit(np.empty((1, 0)), names)
         return WorstPoses(value(np.empty((1, 0))), pose, 1)
-    unit, sampled = _lowest_of_grid(value, counts, descents)
-    unit, values = _descend(value, unit, 1.0 / (np.array(counts) - 1.0))
+    grid = sweep(value, unit_grid(counts), keep=4 * descents)
+    unit, values = _descend(value, grid.at, 1.0 / (np.array(counts) - 1.0))
     order = np.argsort(values, kind="stable")
     unit, values = unit[order], values[order]
     poses = region.from_unit(unit, names)
     distinct = _distinct(poses, region.extent(names) + 1e-12)
-    return WorstPoses(values[distinct], poses[distinct], sampled)
-
-
-def _lowest_of_grid(value, counts: tuple[int, ...], keep: int) -> tuple[Array, int]:  # type: ignore[no-untyped-def]
-    """(keep, k) lowest points of the unit grid, and its size; the grid is walked in slices, never held whole."""
-    axes = [np.linspace(0.0, 1.0, c) for c in counts]
-    rest = np.array(list(product(*axes[1:])))
-    best_values, best_points = np.empty(0), np.empty((0, len(counts)))
-    for first in axes[0]:
-        points = np.column_stack([np.full(len(rest), first), rest])
-        values = value(points)
-        lowest = np.argsort(values, kind="stable")[:keep]
-        best_values = np.concatenate([best_values, values[lowest]])
-        best_points = np.concatenate([best_points, points[lowest]])
-        order = np.argsort(best_values, kind="stable")[: 4 * keep]
-        best_values, best_points = best_values[order], best_points[order]
-    return best_points, len(rest) * counts[0]
+    return WorstPoses(values[distinct], poses[distinct], grid.poses)
 
 
 def _descend(value, unit: Array, step: Array, rounds: int = 40) -> tuple[Array, Array]:  # type: ignore[no-untyped-def]

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import reduce
 from itertools import combinations
 
 import casadi as ca
@@ -48,12 +49,25 @@ def homogeneous(inverse_jacobian: ca.SX, rotations: tuple[int, ...], characteris
     return result
 
 
+def _squares(j_mw: ca.SX) -> tuple[list[ca.SX], list[ca.SX], ca.SX]:
+    """|j_i|^2 of the rows (m,), |det p_i|^2 of the pseudo-inverse's columns (m,), and det.
+
+    The pseudo-inverse goes through adjugates, so that no pose divides by zero.
+    """
+    m, n = j_mw.shape
+    if m == n:
+        columns, det = adjugate(j_mw)
+    else:
+        cofactors, det = adjugate(j_mw.T @ j_mw, symmetric=True)
+        columns = cofactors @ j_mw.T
+    return [ca.sumsqr(j_mw[i, :]) for i in range(m)], [ca.sumsqr(columns[:, i]) for i in range(m)], det
+
+
 def isotropic_components(j_mw: ca.SX) -> tuple[ca.SX, ca.SX]:
     """Isotropic speed and force that each actuator alone would allow, for unit joint speed and effort.
 
     Their minima are v_w, the radius of the largest sphere in the polytope of velocities, and f_w, the same for forces
-    with the minimum-norm joint efforts (40). The pseudo-inverse goes through adjugates, so a singular pose gives
-    f_w = 0 and not NaN.
+    with the minimum-norm joint efforts (40). A singular pose of a square j_mw gives f_w = 0 and not NaN.
 
     Args:
         j_mw: (m, n) homogeneous inverse Jacobian, m >= n.
@@ -61,15 +75,14 @@ def isotropic_components(j_mw: ca.SX) -> tuple[ca.SX, ca.SX]:
     Returns:
         speeds (m,), forces (m,).
     """
-    m, n = j_mw.shape
-    speeds = [1 / ca.norm_2(j_mw[i, :]) for i in range(m)]
-    if m == n:
-        columns, det = adjugate(j_mw)
-    else:
-        cofactors, det = adjugate(j_mw.T @ j_mw)
-        columns = cofactors @ j_mw.T
-    forces = [ca.fabs(det) / ca.norm_2(columns[:, i]) for i in range(m)]
-    return ca.vertcat(*speeds), ca.vertcat(*forces)
+    rows, columns, det = _squares(j_mw)
+    return ca.vertcat(*(1 / ca.sqrt(r) for r in rows)), ca.vertcat(*(ca.fabs(det) / ca.sqrt(c) for c in columns))
+
+
+def isotropic(j_mw: ca.SX) -> tuple[ca.SX, ca.SX]:
+    """v_w and f_w, the minima of `isotropic_components`, with one root and one division each."""
+    rows, columns, det = _squares(j_mw)
+    return 1 / ca.sqrt(reduce(ca.fmax, rows)), ca.fabs(det) / ca.sqrt(reduce(ca.fmax, columns))
 
 
 def force_capability_components(j_mw: ca.SX) -> ca.SX:
@@ -103,9 +116,12 @@ def fvi_components(j_mw: ca.SX, bounds: FviBounds) -> ca.SX:
     return ca.vertcat(speeds * (bounds.joint_speed / bounds.speed), forces * (bounds.joint_effort / bounds.force))
 
 
+def fvi(j_mw: ca.SX, bounds: FviBounds) -> ca.SX:
+    """(39): the smallest of `fvi_components`."""
+    speed, force = isotropic(j_mw)
+    return ca.fmin(speed * (bounds.joint_speed / bounds.speed), force * (bounds.joint_effort / bounds.force))
+
+
 def smallest(components: ca.SX) -> ca.SX:
     """Their minimum; the interpreter's FMIN passes NaN on."""
-    result = components[0]
-    for i in range(1, components.numel()):
-        result = ca.fmin(result, components[i])
-    return result
+    return reduce(ca.fmin, [components[i] for i in range(components.numel())])

@@ -8,28 +8,38 @@ import casadi as ca
 
 
 class Minors:
-    """Every minor of a matrix, each computed once by expansion along its first row.
+    """Every minor of a matrix, each computed once by expansion along its first or its last row.
 
-    Sharing the minors makes an adjugate of a 4 x 4 matrix cost about forty products; structural zeros cost none.
+    Which of the two leaves rows of one half of the matrix, so that few small minors serve all large ones: an adjugate
+    of a 4 x 4 matrix costs twelve 2 x 2 minors and forty-eight products. Structural zeros cost none.
+
+    Args:
+        matrix: (m, n).
+        symmetric: the matrix is its own transpose; then a minor serves its transpose too.
     """
 
-    def __init__(self, matrix: ca.SX) -> None:
-        self.matrix = matrix
+    def __init__(self, matrix: ca.SX, symmetric: bool = False) -> None:
+        self.matrix, self._symmetric = matrix, symmetric
         self._known: dict[tuple[tuple[int, ...], tuple[int, ...]], ca.SX] = {}
 
     def minor(self, rows: tuple[int, ...], columns: tuple[int, ...]) -> ca.SX:
         """Determinant of the submatrix with these rows and columns."""
         if not rows:
             return ca.SX(1)
+        if self._symmetric and columns < rows:
+            rows, columns = columns, rows
         key = (rows, columns)
         if key not in self._known:
+            last = 2 * rows[len(rows) // 2] < self.matrix.shape[0]
+            along, others = (rows[-1], rows[:-1]) if last else (rows[0], rows[1:])
+            sign = (-1) ** (len(rows) - 1) if last else 1
             total = ca.SX(0)
             for place, column in enumerate(columns):
-                entry = self.matrix[rows[0], column]
+                entry = self.matrix[along, column]
                 if entry.is_zero():
                     continue
-                rest = self.minor(rows[1:], columns[:place] + columns[place + 1 :])
-                total += (-1) ** place * (entry * rest)
+                rest = self.minor(others, columns[:place] + columns[place + 1 :])
+                total += sign * (-1) ** place * (entry * rest)
             self._known[key] = total
         return self._known[key]
 
@@ -52,10 +62,10 @@ def volume(matrix: ca.SX) -> ca.SX:
     return ca.norm_2(ca.vertcat(*(minors.minor(rows, columns) for rows in combinations(range(m), n))))
 
 
-def adjugate(matrix: ca.SX) -> tuple[ca.SX, ca.SX]:
+def adjugate(matrix: ca.SX, symmetric: bool = False) -> tuple[ca.SX, ca.SX]:
     """Adjugate and determinant of a square matrix: matrix @ adjugate = determinant * identity."""
     n = matrix.shape[0]
-    minors = Minors(matrix)
+    minors = Minors(matrix, symmetric)
     everything = tuple(range(n))
     result = ca.SX(n, n)
     for row, column in ((r, c) for r in everything for c in everything):

@@ -8,6 +8,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from kinematics.block_program import BlockProgram
 from kinematics.bodies import require_masses
 from kinematics.definition import Definition
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
@@ -15,18 +16,19 @@ from kinematics.geometry import GeometryRecord
 from kinematics.indices import (
     FviBounds,
     force_capability_components,
+    fvi,
     fvi_components,
     homogeneous,
-    isotropic_components,
+    isotropic,
     smallest,
 )
 from kinematics.interpreter import bulk, evaluate
 from kinematics.linear import volume
 from kinematics.model import Model, model_of
-from kinematics.program import Program
 
 Array = np.ndarray
 Build = tuple[list[ca.SX], list[ca.SX]]  # inputs and outputs of a program
+_SLICE = 8192  # poses whose matrices are in memory at once
 
 
 class Mechanism(Definition):
@@ -40,7 +42,7 @@ class Mechanism(Definition):
         if not isinstance(self.geometry, self.Geometry):
             raise InvalidValue(f"{type(self).__name__} geometry", geometry, f"a {self.Geometry.__name__}")
         self.inertia = require_masses(inertia if inertia is not None else self.Inertia())
-        self._programs: dict[object, Program] = {}
+        self._programs: dict[object, BlockProgram] = {}
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.geometry})"
@@ -74,7 +76,7 @@ class Mechanism(Definition):
         else:
             program = self.program("jacobians_of_joints", lambda m: ([m.pose, m.joints], [m.j_q, m.j_x]))
             both = self._together(self._poses(pose), self._joints(joints))
-            diagonal, j_x = _blanked(both[0], evaluate(program, *both))
+            diagonal, j_x = evaluate(program, *both, blank=True)
         j_q = np.zeros((*diagonal.shape, diagonal.shape[-1]))
         j_q[..., range(diagonal.shape[-1]), range(diagonal.shape[-1])] = diagonal
         j_q[np.isnan(diagonal).any(axis=-1)] = np.nan
@@ -93,7 +95,7 @@ class Mechanism(Definition):
         length = self._length(characteristic_length)
 
         def worst(model: Model) -> list[ca.SX]:
-            return [smallest(v) for v in isotropic_components(self._homogeneous(model, length))]
+            return list(isotropic(self._homogeneous(model, length)))
 
         speed, force = self._evaluate(("isotropic", length), worst, pose)
         return speed[..., 0], force[..., 0]
@@ -117,11 +119,18 @@ class Mechanism(Definition):
     def condition_number(self, pose: Array, characteristic_length: float | None = None) -> Array:
         """(...,) 2-norm condition number of J_mw at the actuators; inf on a singularity, NaN out of reach."""
         length = self._length(characteristic_length)
-        (j_mw,) = self._evaluate(("homogeneous", length), lambda model: [self._homogeneous(model, length)], pose)
-        good = np.isfinite(j_mw).all(axis=(-2, -1))
-        result = np.where(np.isnan(j_mw).any(axis=(-2, -1)), np.nan, np.inf)
-        result[good] = np.linalg.cond(j_mw[good])
-        return result
+        pose = self._poses(pose)
+        flat = pose.reshape(-1, pose.shape[-1])
+        result = np.empty(len(flat))
+        for first in range(0, len(flat), _SLICE):
+            part = slice(first, first + _SLICE)
+            (j_mw,) = self._evaluate(
+                ("homogeneous", length), lambda model: [self._homogeneous(model, length)], flat[part]
+            )
+            good = np.isfinite(j_mw).all(axis=(-2, -1))
+            result[part] = np.where(np.isnan(j_mw).any(axis=(-2, -1)), np.nan, np.inf)
+            result[part][good] = np.linalg.cond(j_mw[good])
+        return result.reshape(pose.shape[:-1])
 
     def margin(
         self, name: str, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None
@@ -133,9 +142,13 @@ class Mechanism(Definition):
         """
         bounds = bounds or self.fvi_bounds
         length = self._length(characteristic_length)
-        (value,) = self._evaluate(
-            (name, bounds, length), lambda _: [smallest(self.margin_components(name, bounds, length))], pose
-        )
+
+        def worst(model: Model) -> list[ca.SX]:
+            if name == "fvi":
+                return [fvi(self._homogeneous(model, length), bounds)]
+            return [smallest(self.margin_components(name, bounds, length))]
+
+        (value,) = self._evaluate((name, bounds, length), worst, pose)
         return value[..., 0]
 
     def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
@@ -205,12 +218,12 @@ class Mechanism(Definition):
         return length
 
     def _evaluate(self, key: object, expressions: Callable[[Model], object], pose: Array) -> list[Array]:
-        """All outputs at each pose; NaN as a whole where the pose is NaN or any of them has no value."""
+        """All outputs at each pose; NaN as a whole where the pose is not finite or any of them has no value."""
         pose = self._poses(pose)
         program = self.program(key, lambda m: ([m.pose], list(expressions(m))))  # type: ignore[call-overload]
-        return _blanked(pose, evaluate(program, pose))
+        return evaluate(program, pose, blank=True)
 
-    def program(self, key: object, build: Callable[[Model], Build]) -> Program:
+    def program(self, key: object, build: Callable[[Model], Build]) -> BlockProgram:
         """A program with this robot's numbers in place of the geometry's symbols; built at first use."""
         if key not in self._programs:
             model = self.model()
@@ -237,17 +250,6 @@ class Mechanism(Definition):
             np.broadcast_to(first, (*lead, first.shape[-1])),
             np.broadcast_to(second, (*lead, second.shape[-1])),
         )
-
-
-def _blanked(pose: Array, results: list[Array]) -> list[Array]:
-    lost = np.isnan(pose).any(axis=-1)
-    parts = [r.reshape(*lost.shape, -1) if r.size else r for r in results]
-    for part in parts:
-        if part.size:
-            lost = lost | np.isnan(part).any(axis=-1)
-    for result in results:
-        result[lost] = np.nan
-    return results
 
 
 def checked(values: Array, what: str, names: tuple[str, ...]) -> Array:

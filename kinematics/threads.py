@@ -5,23 +5,29 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from itertools import pairwise
-
-import numpy as np
+from functools import cache
 
 _THREADS = max(1, os.cpu_count() or 1)
 _LEAST_PER_THREAD = 4096
+CHUNK = 1 << 15  # poses of one piece of work: what it copies stays in the second cache
 
 
 def over_spans(count: int, work: Callable[[slice], None]) -> None:
-    """Call `work` on slices that cover range(count) once, one a thread; small counts stay in this one."""
-    if count == 0:
-        return
+    """Call `work` on slices that cover range(count) once, shared among the threads; small counts stay in this one."""
     threads = min(_THREADS, max(1, count // _LEAST_PER_THREAD))
-    edges = np.linspace(0, count, threads + 1).astype(int)
-    spans = [slice(first, last) for first, last in pairwise(edges)]
+    size = max(1, min(CHUNK, -(-count // threads)))
+    spans = [slice(first, min(first + size, count)) for first in range(0, count, size)]
     if threads == 1:
-        work(spans[0])
-        return
-    with ThreadPoolExecutor(threads) as pool:
-        list(pool.map(work, spans))
+        for span in spans:
+            work(span)
+    else:
+        list(_pool(threads).map(work, spans))
+
+
+@cache
+def _pool(threads: int) -> ThreadPoolExecutor:
+    """Kept for the next call: to start threads costs more than a small piece of work."""
+    return ThreadPoolExecutor(threads)
+
+
+os.register_at_fork(after_in_child=_pool.cache_clear)  # a child has the pool but not its threads

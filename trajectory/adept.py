@@ -16,9 +16,9 @@ import casadi as ca
 import numpy as np
 
 from kinematics import InvalidValue
+from kinematics.block_program import BlockProgram
 from kinematics.interpreter import bulk, evaluate
 from kinematics.motion import derivatives_along
-from kinematics.program import Program
 from trajectory.path import Array, Path, Reversed, checked_arc_length
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)  # exact to rounding: the integrands are entire functions
@@ -143,7 +143,7 @@ def _turned(u: Array) -> tuple[Array, Array]:
 
 
 @cache
-def _tangent_program() -> Program:
+def _tangent_program() -> BlockProgram:
     """(u1, u2, w) and their rates by s -> tangent (across, up) to its second, turned fraction to its third derivative.
 
     How far into a corner, u, is held at 0 before it and 1 after it; there the first two derivatives of S5 vanish, so

@@ -75,7 +75,7 @@ def _bench_table(benchmarks: list[dict[str, Any]]) -> str:
     for what in ("inverse", "forward", "fvi"):
         ours, peer = median[f"test_poses[{what}-linkwright]"], median[f"test_poses[{what}-numpy]"]
         lines.append(f"| {what} | {1e3 * ours:.1f} ms | {1e3 * peer:.1f} ms | {peer / ours:.1f} |")
-    lines += ["", "| job | time |", "| --- | --- |"]
+    lines += ["", *_bulk_rows(median, count), "", "| job | time |", "| --- | --- |"]
     poses, rounds = extra["test_one_nlp"]["poses"], extra["test_whole_synthesis"]["rounds"]
     lines.append(f"| one max-min NLP over {poses} poses | {median['test_one_nlp']:.2f} s |")
     lines.append(
@@ -86,6 +86,19 @@ def _bench_table(benchmarks: list[dict[str, Any]]) -> str:
             intervals = name.split("[")[1].rstrip("]")
             lines.append(f"| toppra, N = {intervals}: half cycle {extra[name]['half_cycle']:.5f} s | {seconds:.3f} s |")
     return "\n".join(lines) + "\n"
+
+
+def _bulk_rows(median: dict[str, float], count: int) -> list[str]:
+    """The FVI of each mechanism against CasADi's map and batched numpy."""
+    heads = ["Linkwright", "CasADi map, serial", "CasADi map, threads", "its best over ours", "numpy pinv", "over ours"]
+    lines = [f"| FVI, {count:,} random poses | {' | '.join(heads)} |", "| --- " * (1 + len(heads)) + "|"]
+    for name in ("Redundant3T1R", "Heli4", "Peppermill", "GoughStewart"):
+        ours, *maps = (median[f"test_fvi[{name}-{way}]"] for way in ("linkwright", "casadi serial", "casadi thread"))
+        cells = [f"{1e3 * t:.1f} ms" for t in (ours, *maps)] + [f"{min(maps) / ours:.1f}"]
+        peer = median.get(f"test_fvi[{name}-numpy]")
+        cells += [f"{1e3 * peer:.0f} ms", f"{peer / ours:.0f}"] if peer else ["", ""]
+        lines.append(f"| {name} | {' | '.join(cells)} |")
+    return lines
 
 
 def _run_table(run: dict[str, Any]) -> str:

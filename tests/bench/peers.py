@@ -1,10 +1,10 @@
-"""Heli4 in plain batched numpy, by hand from the paper: what a careful engineer would write without Linkwright."""
+"""Heli4 and the redundant robot in plain batched numpy, by hand: what a careful engineer would write without us."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from kinematics import Heli4
+from kinematics import Heli4, Redundant3T1R
 
 Array = np.ndarray
 UPPER = np.array([0.0, 0.0, 1.0, 1.0])
@@ -66,3 +66,22 @@ def forward(g: Heli4.Geometry, q: Array) -> Array:
         if np.abs(step).max() < 1e-13:
             break
     return pose
+
+
+def redundant_fvi(
+    g: Redundant3T1R.Geometry, pose: Array, speed: float, effort: float, v: float, f: float, length: float
+) -> Array:
+    """(k,) by the batched pseudo-inverse of the homogeneous inverse Jacobian; (33), (39), (40) of Shayya et al."""
+    outer = np.array([True, True, False, False, True, True])
+    reach = np.where(outer, g.outer_arm_length, g.middle_arm_length)
+    rails = np.where(outer, g.outer_rail_y, g.middle_rail_y) * [1, -1, 1, -1, 1, -1]
+    ahead, up = np.where(outer, -0.5, 0.5) * g.platform_length, np.array([0.5, 0.5, 0, 0, -0.5, -0.5])
+    heights = up * g.platform_height - 2 * up * g.outer_rail_z
+    sine, cosine = np.sin(pose[:, 3:]), np.cos(pose[:, 3:])
+    y, z = pose[:, 1:2] + ahead * sine - rails, pose[:, 2:3] + heights
+    x = np.sqrt(reach**2 - y**2 - z**2)
+    turning = ahead * (y * cosine / x - sine) / length
+    j_mw = np.stack([np.ones_like(x), y / x, z / x, turning], axis=-1)
+    velocity = 1 / np.linalg.norm(j_mw, axis=-1).max(axis=-1)
+    force = 1 / np.linalg.norm(np.linalg.pinv(j_mw), axis=-2).max(axis=-1)
+    return np.minimum(velocity * speed / v, force * effort / f)

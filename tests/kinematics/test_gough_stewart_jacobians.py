@@ -209,7 +209,7 @@ def test_symbolic_determinant_and_fvi_stay_small() -> None:
     robot = GoughStewart()
     robot.margin("det_J_x", np.array(robot.home))
     robot.fvi(np.array(robot.home))
-    sizes = {key[0]: len(p.op) for key, p in robot._programs.items() if isinstance(key, tuple)}
+    sizes = {key[0]: len(p.code) for key, p in robot._programs.items() if isinstance(key, tuple)}
     assert sizes["det_J_x"] < 800
     assert sizes["fvi"] < 2500
 
