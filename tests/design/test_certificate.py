@@ -95,7 +95,7 @@ def test_a_claim_false_only_between_two_grid_angles_is_refuted() -> None:
 
 def test_boxes_alone_refute_where_the_first_search_finds_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     robot = Heli4()
-    monkeypatch.setattr("design.certificate._suspects", lambda *_: np.empty((0, 4)))
+    monkeypatch.setattr("design.certificate.suspects", lambda *_: np.empty((0, 4)))
     found = certify(robot, CYLINDER, "internal_determinant", at_least=0.4862)
     assert found.status == "refuted"
     assert float(robot.margin("internal_determinant", found.counterexample)) < 0.4862
