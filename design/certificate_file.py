@@ -39,8 +39,6 @@ _FAULTS = (
     ArithmeticError,
     EOFError,
     MemoryError,
-    NotImplementedError,
-    RecursionError,
     RuntimeError,
     SyntaxError,
     struct.error,
