@@ -114,17 +114,15 @@ class Question:
         seconds, sampled = time.perf_counter() - started, worst.value
         if certificate.counterexample is not None:
             found = float(self.robot.margin(claim.margin, certificate.counterexample, *self.measure.values()))
-            sampled = min(found, sampled) if found == found else -float("inf")
+            sampled = -math.inf if math.isnan(found) else min(found, sampled)
         proof = Proof(certificate, sampled, seconds)
         progress(f"{certificate.status} {proof.claim}: {certificate.boxes} boxes, {seconds:.1f} s")
         return proof
 
     def replay(self, certificate: Certificate, claim: Claim) -> int:
         """How many boxes a certificate's replay bounds; what it raises, where it was made for anything else."""
-        at_least = claim.at_least
-        return replay(
-            certificate, self.robot, region=self.region, margin=claim.margin, at_least=at_least, **self.measure
-        )
+        asked: dict[str, Any] = {"region": self.region, "margin": claim.margin, "at_least": claim.at_least}
+        return replay(certificate, self.robot, **asked, **self.measure)
 
     def _stands(self, known: Certificate, claim: Claim) -> bool:
         try:
@@ -134,15 +132,12 @@ class Question:
         return known.status == "proved"
 
     def _certificate(self, claim: Claim, worst: float, progress: Progress) -> Certificate:
-        """A required bound that is within the tolerance of the worst case is its best one, too."""
+        """A required bound within the tolerance of the worst case is the best, too; 0 is tried where none is proved."""
         asked = self.study.certify
         search: dict[str, Any] = self.measure | {"most_boxes": asked.most_boxes, "progress": progress}
         required, tolerance = claim.at_least, asked.tolerance * abs(worst)
-        if (
-            claim.best
-            and 0.0 < tolerance < float("inf")
-            and not (required is not None and worst - required <= tolerance)
-        ):
+        near = required is not None and worst - required <= tolerance
+        if claim.best and not near and 0.0 < tolerance < math.inf:
             best = best_bound(self.robot, self.region, claim.margin, tolerance, **search)
             if best is not None and (required is None or best.certificate.at_least >= required):
                 return best.certificate

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,7 @@ from studies import pipeline
 from studies.committed_proofs import proof_rows
 from studies.load import load_study
 from studies.optimum import FILE, GIVEN, Optimum, optimum_of, read_optimum
-from studies.rows import ROUNDING, Row, agrees, at_least, same
+from studies.rows import ROUNDING, Row, agrees, at_least, same, same_digest
 from studies.schema import Study
 
 _SOLVED = "Solve_Succeeded"
@@ -61,8 +60,7 @@ def compare(claimed: Optimum, outcome: pipeline.Outcome) -> list[Row]:
 
 def _made_for(study: Study, claimed: Optimum) -> Row:
     digest = str(claimed.data["made_by"].get("study_digest"))
-    row = same("made for this study.toml, unchanged", digest, study.digest)
-    return replace(row, expected=digest[:12], found=study.digest[:12])
+    return same_digest("made for this study.toml, unchanged", digest, study.digest)
 
 
 def _within_bounds(problem: Problem, robot: Mechanism) -> list[Row]:

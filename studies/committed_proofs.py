@@ -10,7 +10,7 @@ from typing import Any
 from design import Certificate, certificate_bytes, load_certificate
 from kinematics.errors import LinkwrightError
 from studies.certify import Claim, Proof, Question
-from studies.rows import Row, same
+from studies.rows import Row, same, same_digest
 
 FOLDER = "certificates"
 
@@ -104,8 +104,11 @@ def _replayed(
 
 
 def _entry_rows(margin: str, entry: Mapping[str, Any], expected: Mapping[str, Any]) -> list[Row]:
-    keys = dict.fromkeys([*expected, *entry])
-    return [same(f"certificate.{margin}.{key}", entry.get(key), expected.get(key)) for key in keys]
+    rows = []
+    for key in dict.fromkeys([*expected, *entry]):
+        compare = same_digest if key == "sha256" else same
+        rows.append(compare(f"certificate.{margin}.{key}", entry.get(key), expected.get(key)))
+    return rows
 
 
 def _off(what: str, expected: str, found: str) -> Row:

@@ -28,7 +28,7 @@ def progress() -> Iterator[Callable[[str], None]]:
 
     Each step stays as a line but those that say the same up to their colon: they only move the count that follows it.
     """
-    console = Console(stderr=True)
+    console = Console(stderr=True, log_path=False)
     if not console.is_terminal:
         yield lambda _: None
         return

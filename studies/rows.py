@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 AGREE = 1e-6  # relative: what another machine's rounding may change in a figure
@@ -32,6 +32,11 @@ class Row:
 def same(what: str, claimed: object, found: object) -> Row:
     """The very same."""
     return Row(what, str(claimed), str(found), 0.0 if claimed == found else -1.0)
+
+
+def same_digest(what: str, claimed: object, found: object) -> Row:
+    """The very same; the first digits are shown."""
+    return replace(same(what, claimed, found), expected=str(claimed)[:12], found=str(found)[:12])
 
 
 def agrees(what: str, claimed: object, found: float) -> Row:

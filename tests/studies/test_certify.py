@@ -196,6 +196,7 @@ def test_certify_exits_1_with_margin_and_pose(
     (tmp_path / "study.toml").write_text(GIVEN.replace(*change))
     ended = linkwright("certify", tmp_path, *arguments)
     assert ended.returncode == 1, ended.stderr
+    assert ended.stderr == ""  # no progress in a pipe
     assert re.search(shown, ended.stdout), ended.stdout
 
 
