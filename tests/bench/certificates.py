@@ -64,8 +64,11 @@ HEAD = COLUMNS + "| --- " * (COLUMNS.count("|") - 1) + "|\n"
 
 def main() -> None:
     """The costs into both pages, and how they grow into the longer one."""
+    about = (
+        f"Shortest of {RUNS} runs on {os.cpu_count()} cores at a load average of {os.getloadavg()[0]:.1f} before them, "
+    )
+    about += "the search for a counterexample included.\n\n"
     costs = "".join(_cost(*case).row() for case in CASES)
-    about = f"Shortest of {RUNS} runs on {os.cpu_count()} cores, the search for a counterexample included.\n\n"
     write_between(ROOT / "README.md", "certificates", about + HEAD + costs)
     write_between(ROOT / "docs" / "certificates.md", "certificates", about + HEAD + costs + "\n" + _growth())
 

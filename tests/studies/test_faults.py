@@ -61,10 +61,10 @@ FAULTS = {
     "sum's dimension": ('"rod_length"]', '"pitch"]', "optimise.sums.fields", "a list out of arm_length"),
     "sum's bound": ("at_most = 1.151", "at_most = 0", "optimise.sums.at_most", "a length > 0"),
     "certified margin": (
-        '["J_q", "fvi"]',
-        '["J_q", "fvu"]',
+        '["J_x", "fvi"]',
+        '["J_x", "fvu"]',
         "certify.margins",
-        "a list out of J_q, J_x, fvi, reach (did",
+        "J_q, J_x, fvi, reach (did you mean fvi?)",
     ),
     "no tolerance": ("tolerance = 0.02", "tolerance = 0", "certify.tolerance", "a number above 0 and below 1"),
     "no boxes": ("most_boxes = 1000", "most_boxes = 3", "certify.most_boxes", "a whole number from 4"),
