@@ -76,7 +76,7 @@ def print_outcome(outcome: Outcome, files: list[Path], as_json: bool) -> None:
     sampled = next(iter(outcome.worst.values())).sampled
     print_table(f"Worst over the region ({sampled} poses and descents)", MARGINS, margin_rows(outcome))
     if outcome.proofs:
-        print_table("Proved over the region", PROOFS, proof_rows(outcome.proofs))
+        print_table("Proofs over the region", PROOFS, proof_rows(outcome.proofs))
     changed = outcome.problem.robot.geometry.as_dict()
     geometry = [
         (name, str(changed[name]), str(value))

@@ -18,6 +18,7 @@ from design.tree import PROVED
 from kinematics import FviBounds, Heli4
 from studies.certify import question_of
 from studies.check import proofs
+from studies.errors import RequirementFailed
 from studies.load import load_study
 from studies.optimum import read_optimum
 from studies.pipeline import Outcome, run
@@ -162,6 +163,15 @@ def test_another_studys_certificate_exits_1_with_its_row(small_run: SmallRun, tm
     ended = linkwright("check", tmp_path)
     assert ended.returncode == 1
     assert re.search(r"FAIL +internal_determinant >= 0\.4 everywhere .*geometry: made for", ended.stdout)
+
+
+def test_a_refuted_claim_fails_a_run_though_its_dense_sample_holds(outcome: Outcome) -> None:
+    outcome.require_all()
+    (claim,) = outcome.question.only("J_q", outcome.worst["fvi"].value)  # far above
+    proof = outcome.question.prove(claim, None, None, lambda _: None)
+    assert proof.gap < 0.0
+    with pytest.raises(RequirementFailed, match=r"J_q: found 0\.\d+ at pose \("):
+        replace(outcome, proofs=(proof,)).require_all()
 
 
 def test_certify_proves_writes_and_exits_0(tmp_path: Path) -> None:
