@@ -1,8 +1,15 @@
 """Regions, requirements and the synthesis of geometries that meet them."""
 
-from design.certificate import BestBound, Certificate, best_bound, certify
-from design.certificate_file import load_certificate, save_certificate
-from design.errors import BrokenCertificate, InvalidRegion, OtherCertificate, SynthesisFailed
+from design.best_bound import BestBound, best_bound
+from design.certificate import Certificate, certify
+from design.certificate_file import certificate_bytes, load_certificate, save_certificate
+from design.errors import (
+    BrokenCertificate,
+    InvalidRegion,
+    OtherCertificate,
+    SynthesisFailed,
+    UnreadableCertificate,
+)
 from design.region import Box, Cylinder, Region
 from design.replay import replay
 from design.requirement import Bounds, Requirement, SumLimit
@@ -23,8 +30,10 @@ __all__ = [
     "SumLimit",
     "Sweep",
     "SynthesisFailed",
+    "UnreadableCertificate",
     "WorstPoses",
     "best_bound",
+    "certificate_bytes",
     "certify",
     "load_certificate",
     "replay",

@@ -42,11 +42,13 @@ def search(
     names: tuple[str, ...],
     failing: Callable[[Array], Array | None],
     most_boxes: int,
+    progress: Callable[[str], None],
 ) -> Search:
     """Bound boxes, cut those that stay open along the coordinate that spreads their claims the most.
 
     Args:
         failing: (k, n) midpoints of open boxes -> one of them where the requirement fails, else None.
+        progress: told how far it is after each batch.
     """
     low, high = root(region, names)
     extent = np.where(high[0] > low[0], high[0] - low[0], 1.0)
@@ -61,6 +63,7 @@ def search(
         nodes, low, high = nodes[~off], low[~off], high[~off]
         lowest, spread = bounds.lowest(low, high)
         boxes += len(low)
+        progress(f"{boxes} boxes bounded, {sum(len(top[0]) for top in stack)} more waiting")
         proved = lowest >= 0.0
         tree.leaves(nodes[proved], PROVED)
         nodes, low, high, spread = nodes[~proved], low[~proved], high[~proved], spread[~proved]

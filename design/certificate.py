@@ -12,6 +12,7 @@ counterexamples.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.metadata import version
 
@@ -25,10 +26,10 @@ from kinematics import FviBounds, Mechanism
 from kinematics.errors import InvalidValue
 
 Array = np.ndarray
+Progress = Callable[[str], None]
 MOST_BOXES = 4_000_000
-_SEED = 20_000  # poses of the grid that looks for a counterexample first
+SEED = 20_000  # poses of the grid that looks for a counterexample first
 _MOST_PER_COORDINATE = 200
-_MOST_TRIES = 12  # of bounds
 _ROUNDING = 1e-12  # by how much plain arithmetic must miss the bound before it refutes, relative to 1 or the bound
 
 
@@ -75,6 +76,7 @@ def certify(
     bounds: FviBounds | None = None,
     characteristic_length: float | None = None,
     most_boxes: int = MOST_BOXES,
+    progress: Progress = lambda _: None,
 ) -> Certificate:
     """Prove or refute that a margin is at least a bound everywhere in a region.
 
@@ -85,6 +87,7 @@ def certify(
         at_least: the bound, in the margin's unit.
         bounds, characteristic_length: as in `Mechanism.margin`.
         most_boxes: after so many the answer is "undecided".
+        progress: told a line of text at each step.
 
     Raises:
         InvalidRegion: the region does not speak of the robot's coordinates.
@@ -106,13 +109,15 @@ def certify(
         inside = poses[region.contains(poses, names)]
         return first_failing(robot, margin, inside, at_least, fvi_bounds, length)
 
-    counterexample = failing(_suspects(robot, region, margin, fvi_bounds, length, _SEED))
+    what = f"certify {margin} >= {at_least:g}"
+    progress(f"{what}: looking for a counterexample")
+    counterexample = failing(suspects(robot, region, margin, fvi_bounds, length, SEED))
     if counterexample is not None:
         nothing = np.empty((0, 2, len(names)))
         found = Search(np.empty(0, dtype=np.int8), 0, nothing, counterexample)
     else:
         lower = LowerBounds(robot, region, margin, at_least, fvi_bounds, length)
-        found = search(lower, region, names, failing, most_boxes)
+        found = search(lower, region, names, failing, most_boxes, lambda done: progress(f"{what}: {done}"))
     refuted, proved = found.counterexample is not None, not len(found.left)
     return Certificate(
         mechanism=type(robot).__name__,
@@ -131,7 +136,7 @@ def certify(
     )
 
 
-def _suspects(robot: Mechanism, region: Region, margin: str, bounds: FviBounds, length: float, about: int) -> Array:
+def suspects(robot: Mechanism, region: Region, margin: str, bounds: FviBounds, length: float, about: int) -> Array:
     """(k, n) poses where the margin is lowest as far as a grid and descents tell, the lowest first."""
     if region.dimension == 0:
         return region.from_unit(np.empty((1, 0)), robot.pose_names)
@@ -148,63 +153,3 @@ def first_failing(
     values = robot.margin(margin, poses, bounds, length)
     below = ~(values >= at_least - _ROUNDING * max(1.0, abs(at_least)))
     return poses[int(np.where(below, np.nan_to_num(values, nan=-np.inf), np.inf).argmin())] if below.any() else None
-
-
-@dataclass(frozen=True)
-class BestBound:
-    """A certified worst case.
-
-    Attributes:
-        certificate: proved; its `at_least` is the bound.
-        sampled: the lowest value that a search found, so the true worst lies between the two.
-    """
-
-    certificate: Certificate
-    sampled: float
-
-
-def best_bound(
-    robot: Mechanism,
-    region: Region,
-    margin: str,
-    tolerance: float,
-    *,
-    bounds: FviBounds | None = None,
-    characteristic_length: float | None = None,
-    most_boxes: int = MOST_BOXES,
-) -> BestBound | None:
-    """The largest bound that is proved, to a tolerance in the margin's unit; None where nothing is proved.
-
-    The first try is the lowest sampled value less the tolerance. Where that is refuted the counterexample's value takes
-    its place; where it stays undecided the tolerance is doubled, so compare `sampled` with what was proved.
-    """
-    if not (np.isfinite(tolerance) and tolerance > 0.0):
-        raise InvalidValue("tolerance", tolerance, "a finite number > 0")
-    fvi_bounds = bounds or robot.fvi_bounds
-    length = robot.characteristic_length if characteristic_length is None else float(characteristic_length)
-    region.check(robot.pose_names)
-
-    def value(pose: Array) -> float:
-        return float(robot.margin(margin, pose, fvi_bounds, length))
-
-    sampled = value(_suspects(robot, region, margin, fvi_bounds, length, 10 * _SEED)[0])
-    step = float(tolerance)
-    for _ in range(_MOST_TRIES):
-        if not np.isfinite(sampled):
-            return None
-        certificate = certify(
-            robot,
-            region,
-            margin,
-            at_least=sampled - step,
-            bounds=fvi_bounds,
-            characteristic_length=length,
-            most_boxes=most_boxes,
-        )
-        if certificate.status == "proved":
-            return BestBound(certificate, sampled)
-        if certificate.counterexample is not None:
-            sampled = value(certificate.counterexample)
-        else:
-            step *= 2.0
-    return None

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import io
 import json
+import struct
 import zipfile
+import zlib
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -11,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from design.certificate import Certificate
-from design.errors import BrokenCertificate
+from design.errors import UnreadableCertificate
 from design.region import Box, Cylinder, Region
 from kinematics import FviBounds
 from kinematics.errors import LinkwrightError
@@ -26,47 +29,75 @@ _PLAIN: dict[str, type] = {
     "status": str,
     "boxes": int,
 }
+# All that numpy, zipfile and json raise on bytes that they did not write.
+_FAULTS = (
+    OSError,
+    ValueError,
+    LookupError,
+    TypeError,
+    AttributeError,
+    ArithmeticError,
+    EOFError,
+    MemoryError,
+    RuntimeError,
+    SyntaxError,
+    struct.error,
+    zipfile.BadZipFile,
+    zlib.error,
+    LinkwrightError,
+)
+
+
+def certificate_bytes(certificate: Certificate) -> bytes:
+    """The file's content; the same certificate gives the same bytes."""
+    header: dict[str, Any] = {key: getattr(certificate, key) for key in _PLAIN}
+    header |= {"region": _region_record(certificate.region), "bounds": asdict(certificate.bounds)}
+    pose = certificate.counterexample
+    buffer = io.BytesIO()
+    np.savez_compressed(
+        buffer,
+        header=np.array(json.dumps(header)),
+        counterexample=np.empty(0) if pose is None else pose,
+        codes=certificate.codes,
+        left=certificate.left,
+    )
+    return buffer.getvalue()
 
 
 def save_certificate(certificate: Certificate, path: Path) -> None:
     """Write it; the name should end in .npz. Numbers keep every bit."""
-    header: dict[str, Any] = {key: getattr(certificate, key) for key in _PLAIN}
-    header |= {"region": _region_record(certificate.region), "bounds": asdict(certificate.bounds)}
-    pose = certificate.counterexample
-    with path.open("wb") as file:
-        np.savez_compressed(
-            file,
-            header=np.array(json.dumps(header)),
-            counterexample=np.empty(0) if pose is None else pose,
-            codes=certificate.codes,
-            left=certificate.left,
-        )
+    path.write_bytes(certificate_bytes(certificate))
 
 
 def load_certificate(path: Path) -> Certificate:
     """Read it back; what it claims is still to be checked by `replay`.
 
     Raises:
-        BrokenCertificate: no such archive, or a part of it is missing or not what it should be.
+        UnreadableCertificate: no such archive, or a part of it is missing or not what it should be.
     """
     try:
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
-            header = json.loads(str(archive["header"]))
-            pose, codes, left = (archive[key] for key in ("counterexample", "codes", "left"))
-        if codes.dtype != np.int8 or codes.ndim != 1:
-            raise BrokenCertificate(f"its codes are {codes.dtype} of shape {codes.shape}")
-        return Certificate(
-            **{key: kind(header[key]) for key, kind in _PLAIN.items()},
-            region=_region(header["region"]),
-            bounds=FviBounds(**{key: float(value) for key, value in header["bounds"].items()}),
-            counterexample=pose if pose.size else None,
-            codes=codes,
-            left=left,
-        )
-    except BrokenCertificate:
-        raise
-    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, LinkwrightError) as error:
-        raise BrokenCertificate(f"the file {path} cannot be read: {error}") from error
+        return _certificate(path)
+    except _FAULTS as error:
+        found = error.strerror if isinstance(error, OSError) else None
+        raise UnreadableCertificate(path, found or str(error) or type(error).__name__) from error
+
+
+def _certificate(path: Path) -> Certificate:
+    with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
+        header = json.loads(str(archive["header"]))
+        pose, codes, left = (archive[key] for key in ("counterexample", "codes", "left"))
+    if codes.dtype != np.int8 or codes.ndim != 1:
+        raise ValueError(f"codes of type {codes.dtype} and shape {codes.shape}")
+    if pose.dtype != float or pose.ndim != 1:
+        raise ValueError(f"a counterexample of type {pose.dtype} and shape {pose.shape}")
+    return Certificate(
+        **{key: kind(header[key]) for key, kind in _PLAIN.items()},
+        region=_region(header["region"]),
+        bounds=FviBounds(**{key: float(value) for key, value in header["bounds"].items()}),
+        counterexample=pose if pose.size else None,
+        codes=codes,
+        left=left,
+    )
 
 
 def _region_record(region: Region) -> dict[str, Any]:
@@ -82,4 +113,4 @@ def _region(record: dict[str, Any]) -> Region:
         return Cylinder(radius=record["radius"], **intervals)
     if record["kind"] == "Box":
         return Box(**intervals)
-    raise BrokenCertificate(f"its region is a {record['kind']}")
+    raise ValueError(f"a region of kind {record['kind']}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from kinematics.errors import LinkwrightError
 
 
@@ -41,3 +43,13 @@ class BrokenCertificate(LinkwrightError):
     def __init__(self, reason: str, box: object = None) -> None:
         self.reason, self.box = reason, box
         super().__init__(f"certificate: {reason}{f', box {box}' if box is not None else ''}")
+
+
+class UnreadableCertificate(BrokenCertificate):
+    """A file that holds no certificate; `path` names it."""
+
+    exit_status = 2
+
+    def __init__(self, path: Path, found: object) -> None:
+        self.path, self.found = path, found
+        super().__init__(f"{path} cannot be read: found {found}; expected what `save_certificate` wrote")

@@ -12,7 +12,7 @@ from design.errors import BrokenCertificate, OtherCertificate
 from design.lower_bounds import LowerBounds
 from design.region import Region
 from design.tree import LEFT, OUTSIDE, halves, leaves, outside, root
-from kinematics import Mechanism
+from kinematics import FviBounds, Mechanism
 
 _CUTS = 2  # a box that only just passed may need a cut where another library rounds its scaling differently
 
@@ -24,19 +24,22 @@ def replay(
     region: Region | None = None,
     margin: str | None = None,
     at_least: float | None = None,
+    bounds: FviBounds | None = None,
+    characteristic_length: float | None = None,
 ) -> int:
     """Check the answer of a certificate for this robot.
 
     Args:
-        region, margin, at_least: what it must be made for, where given; a higher bound than asked is accepted.
+        region, margin, at_least, bounds, characteristic_length: what it must be made for, where given; a higher bound
+            than asked is accepted.
 
     Returns:
         How many boxes were bounded again; 1 for the pose of a refutation.
 
     Raises:
-        OtherCertificate: another mechanism, geometry, version, region, margin or a lower bound.
-        BrokenCertificate: its boxes do not cover the region or one is not proved, its pose does not refute, or it
-            decides nothing.
+        OtherCertificate: another mechanism, geometry, version, region, margin, FVI bounds, length, or a lower bound.
+        BrokenCertificate: its boxes do not cover the region, are not as many as it says, or one is not proved; its pose
+            does not refute; or it decides nothing.
     """
     _same("mechanism", certificate.mechanism, type(robot).__name__)
     _same("geometry", certificate.digest, robot.geometry.digest)
@@ -45,6 +48,10 @@ def replay(
         _same("region", repr(certificate.region), repr(region))
     if margin is not None:
         _same("margin", certificate.margin, margin)
+    if bounds is not None:
+        _same("FVI bounds", certificate.bounds, bounds)
+    if characteristic_length is not None:
+        _same("characteristic length", certificate.characteristic_length, characteristic_length)
     if at_least is not None and not certificate.at_least >= at_least:
         raise OtherCertificate("bound", certificate.at_least, f"at least {at_least}")
     if certificate.status == "proved":
@@ -54,7 +61,7 @@ def replay(
     raise BrokenCertificate(f"its status {certificate.status!r} decides nothing")
 
 
-def _same(what: str, found: str, expected: str) -> None:
+def _same(what: str, found: object, expected: object) -> None:
     if found != expected:
         raise OtherCertificate(what, found, expected)
 
@@ -62,6 +69,8 @@ def _same(what: str, found: str, expected: str) -> None:
 def _replay_proof(certificate: Certificate, robot: Mechanism) -> int:
     names, claim = robot.pose_names, certificate
     claim.region.check(names)
+    if claim.boxes != (bounded := int((claim.codes != OUTSIDE).sum())):
+        raise BrokenCertificate(f"it says {claim.boxes} boxes and lists {bounded}")
     lower = LowerBounds(robot, claim.region, claim.margin, claim.at_least, claim.bounds, claim.characteristic_length)
     count = 0
     for code, low, high in leaves(claim.codes, *root(claim.region, names)):

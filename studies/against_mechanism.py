@@ -11,6 +11,7 @@ from studies.mechanisms import GeometryField, geometry_fields, shape
 from studies.schema import (
     REGION_KINDS,
     BoxRegion,
+    Certify,
     CylinderRegion,
     Optimise,
     Requirement,
@@ -40,6 +41,7 @@ def study_table(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> Table:
             "geometry": Table({name: _dimensions(field) for name, field in fields.items()}),
             "region": _region_table(mechanism, raw.get("region")),
             "optimise": table_of(Optimise).updated(optimise),
+            "certify": table_of(Certify).updated({"margins": Key("a list out of", choices=mechanism.margins)}),
             "requirement": table_of(Requirement, rows=True).updated({"margin": margins}),
         }
     )
@@ -66,6 +68,9 @@ def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyP
     for i, names in _rows(optimise, "sums", "fields"):
         if isinstance(names, tuple) and not set(map(str, names)) <= set(_lengths(fields)):
             yield ("optimise", "sums", i, "fields")
+    certified = _table(data, "certify").get("margins")
+    if isinstance(certified, tuple) and not set(map(str, certified)) <= set(mechanism.margins):
+        yield ("certify", "margins")
     for i, margin in _rows(data, "requirement", "margin"):
         if margin not in mechanism.margins:
             yield ("requirement", i, "margin")

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,32 +12,13 @@ from design import Region
 from design.nlp import Problem
 from kinematics import Mechanism
 from studies import pipeline
+from studies.committed_proofs import proof_rows
 from studies.load import load_study
 from studies.optimum import FILE, GIVEN, Optimum, optimum_of, read_optimum
+from studies.rows import ROUNDING, Row, agrees, at_least, same, same_digest
 from studies.schema import Study
 
-AGREE = 1e-6  # relative: what another machine's rounding may change in a figure
-ROUNDING = 1e-9  # m or rad: of a pose in the file, and of a sum
 _SOLVED = "Solve_Succeeded"
-
-
-@dataclass(frozen=True)
-class Row:
-    """One claim: what it is, what the file says or the study wants, what was found, and by how much it holds.
-
-    `margin` is negative where the claim fails.
-    """
-
-    what: str
-    expected: str
-    found: str
-    margin: float
-    where: str = ""
-
-    @property
-    def holds(self) -> bool:
-        """Whether the claim stands; NaN never does."""
-        return bool(self.margin >= 0.0)
 
 
 def check_study(study_file: Path) -> list[Row]:
@@ -54,11 +33,21 @@ def check_study(study_file: Path) -> list[Row]:
     if not made_for.holds:
         return [made_for]  # an answer to another question
     outcome = pipeline.run(study, claimed.robot(study), lambda _: None, compare_cycles=False)
-    return compare(claimed, outcome)
+    return compare(claimed, outcome) + proofs(claimed, outcome, study_file.parent)
+
+
+def proofs(claimed: Optimum, outcome: pipeline.Outcome, folder: Path) -> list[Row]:
+    """Every claim of being proved, its certificate in the folder replayed.
+
+    Raises:
+        UnreadableCertificate: a file is missing or cannot be read.
+    """
+    worst = {margin: found.value for margin, found in outcome.worst.items()}
+    return proof_rows(outcome.question, claimed.certificates, worst, folder)
 
 
 def compare(claimed: Optimum, outcome: pipeline.Outcome) -> list[Row]:
-    """Every claim of a file against what its geometry was found to do."""
+    """Every claim of a file, but those of being proved, against what its geometry was found to do."""
     study, problem, robot = outcome.study, outcome.problem, outcome.robot
     return [
         _made_for(study, claimed),
@@ -71,12 +60,7 @@ def compare(claimed: Optimum, outcome: pipeline.Outcome) -> list[Row]:
 
 def _made_for(study: Study, claimed: Optimum) -> Row:
     digest = str(claimed.data["made_by"].get("study_digest"))
-    row = _same("made for this study.toml, unchanged", digest, study.digest)
-    return replace(row, expected=digest[:12], found=study.digest[:12])
-
-
-def _same(what: str, claimed: object, found: object) -> Row:
-    return Row(what, str(claimed), str(found), 0.0 if claimed == found else -1.0)
+    return same_digest("made for this study.toml, unchanged", digest, study.digest)
 
 
 def _within_bounds(problem: Problem, robot: Mechanism) -> list[Row]:
@@ -101,13 +85,13 @@ def _requirements(study: Study, outcome: pipeline.Outcome) -> list[Row]:
     rows = []
     for r in outcome.problem.requirements:
         worst = outcome.worst[r.margin]
-        rows.append(_at_least(f"required {r.margin}", r.at_least, worst.value, worst.pose.tolist()))
+        rows.append(at_least(f"required {r.margin}", r.at_least, worst.value, worst.pose.tolist()))
         if r.margin in outcome.on_cycle:
-            rows.append(_at_least(f"required {r.margin} on the cycle", r.at_least, outcome.on_cycle[r.margin], None))
+            rows.append(at_least(f"required {r.margin} on the cycle", r.at_least, outcome.on_cycle[r.margin], None))
     if study.optimise is not None and outcome.prototype is not None:
         name = outcome.problem.objective
         worst = outcome.worst[name]
-        rows.append(_at_least(f"{name} beats the prototype", outcome.prototype[name].value, worst.value, worst.pose))
+        rows.append(at_least(f"{name} beats the prototype", outcome.prototype[name].value, worst.value, worst.pose))
     for name, value in outcome.cycle_figures().get("peak_over_limit", {}).items():
         rows.append(Row(f"{name}, peak over limit", "<= 1", f"{value:.6f}", 1.0 - value))
     return rows
@@ -122,7 +106,7 @@ def _at_claimed_poses(claimed: Optimum, problem: Problem, robot: Mechanism, regi
             rows.append(Row(f"worst_pose.{name}", "a pose in the region", str(given), -1.0))
             continue
         value = robot.margin(name, pose, problem.fvi_bounds, problem.characteristic_length)
-        rows.append(_agrees(f"{name} at worst_pose", claimed.data["figures"].get(name), float(value)))
+        rows.append(agrees(f"{name} at worst_pose", claimed.data["figures"].get(name), float(value)))
     return rows
 
 
@@ -132,15 +116,15 @@ def _entries(claimed: Optimum, found: Optimum, study: Study) -> list[Row]:
     ours["made_by.solver_status"] = _SOLVED if study.optimise else GIVEN  # `check` does not optimise again
     rows = []
     for key in dict.fromkeys([*ours, *theirs]):
-        if key.split(".")[0] in ("worst_pose", "geometry") or key == "made_by.study_digest":
+        if key.split(".")[0] in ("worst_pose", "geometry", "certificate") or key == "made_by.study_digest":
             continue  # these have their own rows
         if key not in ours or key not in theirs:
             have, lack = ("the file", "the run") if key in theirs else ("the run", "the file")
             rows.append(Row(key, f"in {have} only", f"not in {lack}", -1.0))
         elif isinstance(ours[key], float):
-            rows.append(_agrees(key, theirs[key], ours[key]))
+            rows.append(agrees(key, theirs[key], ours[key]))
         else:
-            rows.append(_same(key, theirs[key], ours[key]))
+            rows.append(same(key, theirs[key], ours[key]))
     missing = set(found.data["worst_pose"]) - set(claimed.data["worst_pose"])
     return rows + [Row(f"worst_pose.{name}", "a pose", "none in the file", -1.0) for name in sorted(missing)]
 
@@ -155,20 +139,3 @@ def _leaves(node: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 def _numbers(value: object, count: int) -> bool:
     return isinstance(value, list) and len(value) == count and all(type(v) in (int, float) for v in value)
-
-
-def _agrees(what: str, claimed: object, found: float) -> Row:
-    if isinstance(claimed, bool) or not isinstance(claimed, float | int) or not math.isfinite(claimed):
-        return Row(what, str(claimed), f"{found:.9g}", -1.0)
-    off = abs(found - claimed)
-    return Row(what, f"{claimed:.9g}", f"{found:.9g}", AGREE * max(abs(claimed), ROUNDING) - off)
-
-
-def _at_least(what: str, bound: float, found: float, pose: Any) -> Row:
-    where = "" if pose is None else shown_pose(pose)
-    return Row(what, f">= {bound:g}", f"{found:.9g}", found - bound, where)
-
-
-def shown_pose(pose: Any) -> str:
-    """A pose for people: short, and without negative zeros."""
-    return f"({', '.join(f'{round(float(v), 6) + 0.0:.4g}' for v in pose)})"

@@ -27,7 +27,7 @@ StudyArgument = Annotated[
     str, typer.Argument(metavar="STUDY", help="A study's name (see `linkwright list`), or a path to a study.toml.")
 ]
 OutOption = Annotated[
-    Path | None, typer.Option("--out", help="Folder for the results. [default: out/ and the study's name]")
+    Path | None, typer.Option("--out", help="Folder for the results (default: out/ and the study's name).")
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object for machines, and nothing else.")]
 PrototypeOption = Annotated[
@@ -71,7 +71,7 @@ def run(
         typer.Option("--commit", help="Also put optimum.toml beside the study, for `check` to verify from now on."),
     ] = False,
 ) -> None:
-    """The whole way: optimise, search densely, time the cycle, verify, write set-points and report."""
+    """The whole way: optimise, search densely, time the cycle, verify, prove, write set-points and report."""
     from studies import console
     from studies.outputs import write_run
 
@@ -79,7 +79,7 @@ def run(
     folder = out or Path("out") / asked.name
     beside = _study_file(study).parent if commit else None
     _require_writable(folder, beside)
-    outcome = _outcome(asked, None)
+    outcome = _outcome(asked, None, prove=True)
     files = write_run(outcome, folder, f"linkwright run {study}", beside)
     console.print_outcome(outcome, files, json)
 
@@ -94,6 +94,39 @@ def optimise(study: StudyArgument, json: JsonOption = False) -> None:
     if asked.optimise is None:
         raise InvalidValue(f"study {asked.name}", "no [optimise] table", "one with the variables to optimise")
     console.print_outcome(_outcome(asked, None), [], json)
+
+
+@app.command()
+def certify(
+    study: StudyArgument,
+    margin: Annotated[
+        str | None,
+        typer.Option("--margin", help="Only this one (default: those that the study names)."),
+    ] = None,
+    at_least: Annotated[
+        float | None,
+        typer.Option("--at-least", help="The bound to prove for --margin (default: the required one, or the best)."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Folder for the certificates (default: none are written).")
+    ] = None,
+    json: JsonOption = False,
+    prototype: PrototypeOption = False,
+) -> None:
+    """Prove the requirements of the committed optimum at every pose of the region; exits 1 if one is not."""
+    from studies import console
+    from studies.certify import question_of
+    from studies.outputs import write_proofs
+
+    asked = _load(study)
+    question = question_of(asked, _robot(study, asked, prototype))
+    claims = question.only(margin, at_least)
+    _require_writable(out)
+    with console.progress() as tell:
+        proofs = [question.prove(claim, None, None, tell) for claim in claims]
+    console.print_proofs(question, proofs, write_proofs(proofs, out) if out else [], json)
+    if not all(proof.certificate.status == "proved" for proof in proofs):
+        raise typer.Exit(1)
 
 
 @app.command()
@@ -130,15 +163,17 @@ def trajectory(
 def report(
     study: StudyArgument, out: OutOption = None, json: JsonOption = False, prototype: PrototypeOption = False
 ) -> None:
-    """Write the report and the set-points of the committed optimum; nothing is optimised."""
+    """Write the report and the set-points of the committed optimum; its proofs are replayed, nothing is optimised."""
     from studies import console
+    from studies.optimum import committed_certificates
     from studies.outputs import write_report
 
     asked = _load(study)
     robot = _robot(study, asked, prototype)
     folder = out or Path("out") / asked.name
     _require_writable(folder)
-    outcome = _outcome(asked, robot)
+    known = committed_certificates(asked, _study_file(study).parent, robot)
+    outcome = _outcome(asked, robot, prove=True, known=known)
     files = write_report(outcome, folder, f"linkwright report {study}")
     console.print_outcome(outcome, files, json)
 
@@ -147,7 +182,7 @@ def report(
 def check(
     studies: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[STUDY ...]", help="Names or paths. [default: all that have an optimum]"),
+        typer.Argument(metavar="[STUDY ...]", help="Names or paths (default: all that have an optimum)."),
     ] = None,
     json: JsonOption = False,
 ) -> None:
@@ -225,8 +260,9 @@ def _robot(given: str, asked: Study, prototype: bool) -> Mechanism:
     return (None if prototype else committed(asked, _study_file(given).parent)) or setup.robot_of(asked)
 
 
-def _outcome(asked: Study, robot: Any) -> Outcome:
+def _outcome(asked: Study, robot: Any, prove: bool = False, known: Any = None) -> Outcome:
     from studies import console, pipeline
 
     with console.progress() as tell:
-        return pipeline.run(asked, robot, tell)
+        outcome = pipeline.run(asked, robot, tell)
+        return pipeline.certified(outcome, known or {}, tell) if prove else outcome

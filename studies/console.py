@@ -12,26 +12,36 @@ from typing import Any
 
 import numpy as np
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Column, Table
 from rich.text import Text
 
-from studies.check import Row, shown_pose
+from studies.certify import Proof, Question
 from studies.pipeline import Outcome, Timing
+from studies.rows import Row
+from studies.tables import MARGINS, PROOFS, margin_rows, proof_rows
 from trajectory.drive_files import FORMATS
 
 
 @contextmanager
 def progress() -> Iterator[Callable[[str], None]]:
-    """A spinner with the current step on a terminal's standard error; silent in a pipe."""
-    console = Console(stderr=True)
+    """A spinner with the current step on a terminal's standard error; silent in a pipe.
+
+    Each step stays as a line but those that say the same up to their colon: they only move the count that follows it.
+    """
+    console = Console(stderr=True, log_path=False)
     if not console.is_terminal:
         yield lambda _: None
         return
     with console.status("starting") as status:
+        last = ""
 
         def tell(step: str) -> None:
-            status.update(step)
-            console.log(step, highlight=False)
+            nonlocal last
+            status.update(escape(step))
+            if (head := step.partition(":")[0]) != last:
+                console.log(escape(step), highlight=False)
+            last = head
 
         yield tell
 
@@ -64,23 +74,10 @@ def print_outcome(outcome: Outcome, files: list[Path], as_json: bool) -> None:
     if as_json:
         print_json(_outcome_data(outcome, files))
         return
-    wanted = {r.margin: f">= {r.at_least:g}" for r in outcome.problem.requirements}
-    rows = [
-        (
-            margin,
-            wanted.get(margin, ""),
-            f"{outcome.prototype[margin].value:.6f}" if outcome.prototype else "",
-            f"{worst.value:.6f}",
-            shown_pose(worst.pose),
-        )
-        for margin, worst in outcome.worst.items()
-    ]
     sampled = next(iter(outcome.worst.values())).sampled
-    print_table(
-        f"Worst over the region ({sampled} poses and descents)",
-        ("margin", "wanted", "prototype", "result", "at pose"),
-        rows,
-    )
+    print_table(f"Worst over the region ({sampled} poses and descents)", MARGINS, margin_rows(outcome))
+    if outcome.proofs:
+        print_table("Proofs over the region", PROOFS, proof_rows(outcome.proofs))
     changed = outcome.problem.robot.geometry.as_dict()
     geometry = [
         (name, str(changed[name]), str(value))
@@ -131,6 +128,23 @@ def _print_between(timing: Timing) -> None:
     print_table("Between set-points, by the drive's interpolation", ("interpolation", "formats", *names), rows)
 
 
+def print_proofs(question: Question, proofs: Sequence[Proof], files: list[Path], as_json: bool) -> None:
+    """Each claim and its answer."""
+    if as_json:
+        print_json(
+            {
+                "study": question.study.name,
+                "geometry_hash": question.robot.geometry.digest,
+                "region": repr(question.region),
+                "proofs": [_proof_data(proof) for proof in proofs],
+                "files": files,
+            }
+        )
+        return
+    print_table(f"{question.study.name}, over {question.region}", PROOFS, proof_rows(proofs))
+    _print_files(files)
+
+
 def print_checks(found: dict[str, list[Row]], as_json: bool) -> None:
     """Each claim of each study."""
     if as_json:
@@ -160,7 +174,23 @@ def _outcome_data(outcome: Outcome, files: list[Path]) -> dict[str, Any]:
         "cycle": outcome.cycle_figures() or None,
         "cycle_header": dict(outcome.timing.setpoints.header) if outcome.timing else None,
         "prototype_cycle": outcome.prototype_timing.figures() if outcome.prototype_timing else None,
+        "proofs": [_proof_data(proof) for proof in outcome.proofs],
         "files": files,
+    }
+
+
+def _proof_data(proof: Proof) -> dict[str, Any]:
+    found = proof.certificate
+    return {
+        "margin": found.margin,
+        "at_least": found.at_least,
+        "status": found.status,
+        "boxes": found.boxes,
+        "seconds": proof.seconds,
+        "sampled": proof.sampled,
+        "gap": proof.gap,
+        "counterexample": None if found.counterexample is None else found.counterexample.tolist(),
+        "boxes_left": len(found.left),
     }
 
 

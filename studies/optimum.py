@@ -9,8 +9,10 @@ from typing import Any
 
 import tomli_w
 
+from design import Certificate
 from kinematics import Mechanism
 from kinematics.errors import InvalidGeometry
+from studies.committed_proofs import known_certificates, proof_entries
 from studies.errors import KeyPath, StudyError, spelled
 from studies.mechanisms import mechanism_class
 from studies.pipeline import Outcome
@@ -29,7 +31,7 @@ class Optimum:
     Attributes:
         data: `mechanism`, `active` (what holds the optimum back) and the tables `made_by`, `geometry` (by the fields'
             names), `figures` (worst value of each margin; the prototype's objective as `prototype`), `worst_pose`
-            (where each one is) and, where the study asks for one, `cycle`.
+            (where each one is) and, where the study asks for them, `certificate` (by margin) and `cycle`.
         file: where it was read from.
     """
 
@@ -45,6 +47,12 @@ class Optimum:
         """An error at a key of the file."""
         assert self.file is not None
         return StudyError([self.file.problem(path, found, expected)])
+
+    @property
+    def certificates(self) -> dict[str, dict[str, Any]]:
+        """What it says of each claim that was to be proved, by margin."""
+        entries: dict[str, dict[str, Any]] = self.data.get("certificate", {})
+        return entries
 
     def robot(self, study: Study) -> Mechanism:
         """The study's mechanism with this geometry.
@@ -90,6 +98,7 @@ def optimum_of(outcome: Outcome) -> Optimum:
             "geometry": outcome.robot.geometry.as_dict(),
             "figures": figures,
             "worst_pose": {m: [round(float(v), 9) + 0.0 for v in w.pose] for m, w in outcome.worst.items()},
+            **({"certificate": proof_entries(outcome.proofs, study.certify.most_boxes)} if outcome.proofs else {}),
             **({"cycle": cycle} if (cycle := outcome.cycle_figures()) else {}),
         }
     )
@@ -108,6 +117,12 @@ def read_optimum(path: Path) -> Optimum:
     for name, value in optimum.data["figures"].items():
         if isinstance(value, bool) or not isinstance(value, float | int):
             raise optimum.fault(("figures", name), spelled(value), "a number")
+    certificates = optimum.data.get("certificate", {})
+    if not isinstance(certificates, dict):
+        raise optimum.fault(("certificate",), spelled(certificates), "a table")
+    for name, value in certificates.items():
+        if not isinstance(value, dict):
+            raise optimum.fault(("certificate", name), spelled(value), "a table")
     return optimum
 
 
@@ -125,6 +140,21 @@ def committed(study: Study, folder: Path) -> Mechanism | None:
         asked = f"{study.digest}, this study's; run it again with --commit, or use --prototype"
         raise optimum.fault(("made_by", "study_digest"), spelled(made_for), asked)
     return optimum.robot(study)
+
+
+def committed_certificates(study: Study, folder: Path, robot: Mechanism) -> dict[str, Certificate]:
+    """The certificates beside a study by margin, still to be replayed; none where its optimum is another's.
+
+    Raises:
+        StudyError, UnreadableCertificate: a file cannot be used.
+    """
+    if not (folder / FILE).is_file():
+        return {}
+    optimum = read_optimum(folder / FILE)
+    made_by = optimum.data["made_by"]
+    if (made_by.get("study_digest"), made_by.get("geometry_hash")) != (study.digest, robot.geometry.digest):
+        return {}
+    return known_certificates(optimum.certificates, folder)
 
 
 def _tables() -> list[tuple[str, type, str]]:

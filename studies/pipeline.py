@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from design import Certificate
 from design.nlp import Problem, active_sets
 from design.region import Region
 from design.search import WorstPoses
 from design.synthesis import Progress, Synthesis, synthesise, worst_of
 from kinematics import Mechanism
 from studies import schema, setup
+from studies.certify import Proof, Question, prove_all
 from studies.errors import Failed, RequirementFailed
 from studies.schema import Study
 from trajectory import Cycle, Move, Setpoints, cycle_setpoints, there_and_back
@@ -71,6 +74,7 @@ class Outcome:
         on_cycle: the worst value of each requirement's margin on the cycle's path; empty without a cycle.
         timing: the cycle; None where the study asks for none.
         prototype_timing: the prototype's cycle, to compare with.
+        proofs: what was tried to prove of every pose; empty before that stage.
     """
 
     study: Study
@@ -83,6 +87,12 @@ class Outcome:
     on_cycle: dict[str, float]
     timing: Timing | None
     prototype_timing: Timing | None
+    proofs: tuple[Proof, ...] = ()
+
+    @property
+    def question(self) -> Question:
+        """What is to be proved, of this robot."""
+        return Question(self.study, self.problem, self.region, self.robot)
 
     @property
     def active(self) -> list[str]:
@@ -98,7 +108,7 @@ class Outcome:
         return {**self.timing.figures(), "worst_on_the_path": self.on_cycle}
 
     def require_all(self) -> None:
-        """Check every requirement, over the region and on the cycle's path.
+        """Check every requirement, over the region and on the cycle's path, and that no claim is refuted.
 
         Raises:
             RequirementFailed: with each one that fails.
@@ -111,6 +121,10 @@ class Outcome:
             on_path = self.on_cycle.get(requirement.margin, math.inf)
             if not on_path >= requirement.at_least:
                 failed.append(Failed(f"{requirement.margin} on the cycle", requirement.at_least, on_path, ()))
+        for proof in self.proofs:
+            if (pose := proof.certificate.counterexample) is not None:
+                name, bound = proof.certificate.margin, proof.certificate.at_least
+                failed.append(Failed(name, bound, proof.sampled, tuple(pose.tolist())))
         if failed:
             raise RequirementFailed(failed)
 
@@ -183,3 +197,15 @@ def run(study: Study, robot: Mechanism | None, progress: Progress, compare_cycle
         if before is not None and compare_cycles:
             prototype_timing = time_cycle(study.trajectory, problem.robot)
     return Outcome(study, problem, region, robot, synthesis, worst, before, on_cycle, timing, prototype_timing)
+
+
+def certified(outcome: Outcome, known: Mapping[str, Certificate], progress: Progress) -> Outcome:
+    """The outcome with the study's proofs; certificates that are known and prove a claim are only replayed.
+
+    Raises:
+        RequirementFailed: the dense search or a proof's search finds a requirement broken.
+    """
+    outcome.require_all()
+    found = replace(outcome, proofs=prove_all(outcome.question, outcome.worst, known, progress))
+    found.require_all()
+    return found

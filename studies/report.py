@@ -11,8 +11,8 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from studies import plots
-from studies.check import shown_pose
 from studies.pipeline import Outcome, Timing
+from studies.tables import MARGINS, PROOFS, margin_rows, proof_rows
 from trajectory.motion import motion_of
 
 Pictures = list[tuple[str, bytes]]  # title and PNG
@@ -43,7 +43,10 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
         bounds=outcome.problem.fvi_bounds,
         region=repr(outcome.region),
         geometry=_geometry_rows(outcome),
-        margins=_margin_rows(outcome),
+        margin_columns=MARGINS,
+        margins=margin_rows(outcome),
+        proof_columns=PROOFS,
+        proofs=proof_rows(outcome.proofs),
         sampled=next(iter(outcome.worst.values())).sampled,
         synthesis=outcome.synthesis,
         active=outcome.active,
@@ -63,22 +66,6 @@ def _geometry_rows(outcome: Outcome) -> list[tuple[str, str, str, str]]:
     return [
         (name, _numbers(getattr(before, name)), _numbers(getattr(after, name)), doc)
         for name, doc in after.descriptions().items()
-    ]
-
-
-def _margin_rows(outcome: Outcome) -> list[tuple[str, str, str, str, str]]:
-    """Margin, wanted, prototype's worst, result's worst, where."""
-    wanted = {r.margin: f"at least {r.at_least:g}" for r in outcome.problem.requirements}
-    wanted.setdefault(outcome.problem.objective, "as large as possible" if outcome.synthesis else "")
-    return [
-        (
-            margin,
-            wanted.get(margin, ""),
-            f"{outcome.prototype[margin].value:.6f}" if outcome.prototype else "",
-            f"{worst.value:.6f}",
-            shown_pose(worst.pose),
-        )
-        for margin, worst in outcome.worst.items()
     ]
 
 

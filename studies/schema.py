@@ -116,6 +116,17 @@ class Requirement(_Model):
     at_least: Annotated[float, Key("a finite number")]
 
 
+class Certify(_Model):
+    """What is proved of every pose: each required margin at its bound, the objective and any other at its best."""
+
+    margins: Annotated[tuple[Name, ...] | None, Key("a list out of")] = None
+    """None for all that are required, and the objective."""
+    tolerance: Annotated[Positive, Field(lt=1), Key("a number above 0 and below 1")] = 0.01
+    """By how much a best bound may stay below the lowest value found, relative to that value."""
+    most_boxes: Annotated[int, Field(ge=4, le=10**9), Key("a whole number from 4 to 1000000000")] = 4_000_000
+    """After so many a claim stays undecided."""
+
+
 class Cycle(_Model):
     """The pick-and-place cycle: up by `lift`, across by `span`, down, and back [m, rad, kg]."""
 
@@ -212,6 +223,7 @@ class Study(_Model):
     )
     """About how many poses of the region the worst cases are searched on, before the descents."""
     requirement: Annotated[tuple[Requirement, ...], table_of(Requirement, rows=True)] = ()
+    certify: Annotated[Certify, table_of(Certify)] = Certify()
     trajectory: Annotated[Trajectory | None, table_of(Trajectory)] = None
 
     @property

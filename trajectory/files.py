@@ -35,16 +35,18 @@ def require_writable(folder: Path) -> None:
 def write_files(folder: Path, files: Mapping[str, str | bytes]) -> list[Path]:
     """Write all files into a folder; each replaces its predecessor at once, and none is touched if one cannot be made.
 
+    A name may begin with folders, which are made.
+
     Raises:
         CannotWrite: with the path and the system's reason.
     """
     prepared: list[tuple[str, Path]] = []
     try:
-        folder.mkdir(parents=True, exist_ok=True)
         for name, content in files.items():
-            data = content.encode() if isinstance(content, str) else content
-            handle, temporary = tempfile.mkstemp(dir=folder, prefix=f".{name}.")
-            prepared.append((temporary, folder / name))
+            data, target = content.encode() if isinstance(content, str) else content, folder / name
+            target.parent.mkdir(parents=True, exist_ok=True)
+            handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+            prepared.append((temporary, target))
             with os.fdopen(handle, "wb") as stream:
                 stream.write(data)
             os.chmod(temporary, 0o644)

@@ -11,24 +11,20 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).parents[2]
+from tests.bench import certificates
+from tests.bench.page import ROOT, write_between
 
 
 def main() -> None:
-    """Benchmarks, study, README."""
+    """Benchmarks, study, certificates."""
     with tempfile.TemporaryDirectory() as folder:
         tables = {"bench": _bench_table(_benchmarks(Path(folder) / "bench.json"))}
         tables["run"] = _run_table(_study(Path(folder)))
         (ROOT / "docs").mkdir(exist_ok=True)
         (ROOT / "docs" / "heli4.png").write_bytes((Path(folder) / "mechanism.png").read_bytes())
-    readme = ROOT / "README.md"
-    text = readme.read_text()
     for name, table in tables.items():
-        start, end = f"<!-- {name}: written by `make bench` -->", f"<!-- /{name} -->"
-        before, rest = text.split(start)
-        text = f"{before}{start}\n{table}{end}{rest.split(end)[1]}"
-        print(table)
-    readme.write_text(text)
+        write_between(ROOT / "README.md", name, table)
+    certificates.main()
 
 
 def _benchmarks(file: Path) -> list[dict[str, Any]]:
@@ -103,9 +99,11 @@ def _bulk_rows(median: dict[str, float], count: int) -> list[str]:
 
 def _run_table(run: dict[str, Any]) -> str:
     """The study's answer as Markdown."""
-    lines = [f"| worst over `{run['region']}` | prototype | optimum |", "| --- | --- | --- |"]
+    lines = [f"| worst over `{run['region']}` | prototype | optimum | of the optimum |", "| --- | --- | --- | --- |"]
+    proofs = {p["margin"]: f"{p['status']} >= {p['at_least']:.6g}" for p in run["proofs"]}
     lines += [
-        f"| {name} | {run['prototype'][name]:.4f} | {worst['value']:.4f} |" for name, worst in run["worst"].items()
+        f"| {name} | {run['prototype'][name]:.4f} | {worst['value']:.4f} | {proofs.get(name, '')} |"
+        for name, worst in run["worst"].items()
     ]
     lines += ["", f"Held back by: {'; '.join(run['active'])}.", ""]
     header, cycle, before = run["cycle_header"], run["cycle"], run["prototype_cycle"]

@@ -95,7 +95,7 @@ def test_a_claim_false_only_between_two_grid_angles_is_refuted() -> None:
 
 def test_boxes_alone_refute_where_the_first_search_finds_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     robot = Heli4()
-    monkeypatch.setattr("design.certificate._suspects", lambda *_: np.empty((0, 4)))
+    monkeypatch.setattr("design.certificate.suspects", lambda *_: np.empty((0, 4)))
     found = certify(robot, CYLINDER, "internal_determinant", at_least=0.4862)
     assert found.status == "refuted"
     assert float(robot.margin("internal_determinant", found.counterexample)) < 0.4862
@@ -190,6 +190,25 @@ def test_the_best_bound_is_within_its_tolerance_of_the_sampled_worst() -> None:
     assert 0.0 <= found.sampled - found.certificate.at_least <= 1e-3 * (1 + 1e-9)
     independent = worst_poses(Heli4(), CYLINDER, "internal_determinant", about=50_000).value
     assert found.certificate.at_least <= independent <= found.sampled + 1e-9
+
+
+def test_a_best_bound_beyond_the_allowance_is_the_closest_that_is_not() -> None:
+    """Of the tolerance doubled again and again, the smallest that its share of the boxes proves."""
+    tolerance, most_boxes = 2e-3, 144_000
+    found = best_bound(Heli4(), CYLINDER, "J_q", tolerance, most_boxes=most_boxes)
+    assert found is not None
+    doublings = math.log2((found.sampled - found.certificate.at_least) / tolerance)
+    assert doublings == pytest.approx(round(doublings), abs=1e-6)
+    assert round(doublings) >= 1
+    nearer = found.sampled - tolerance * 2.0 ** (round(doublings) - 1)
+    assert certify(Heli4(), CYLINDER, "J_q", at_least=nearer, most_boxes=most_boxes // 4).status == "undecided"
+
+
+def test_progress_counts_the_boxes_up_to_the_answer() -> None:
+    told: list[str] = []
+    found = certify(Heli4(), CYLINDER, "J_q", at_least=0.4, progress=told.append)
+    assert all(line.startswith("certify J_q >= 0.4: ") for line in told)
+    assert told[-1].endswith(f"{found.boxes} boxes bounded, 0 more waiting")
 
 
 def test_there_is_no_best_bound_out_of_reach() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from design import (
     Cylinder,
     OtherCertificate,
     Region,
+    UnreadableCertificate,
     certify,
     load_certificate,
     replay,
@@ -128,6 +130,20 @@ def test_another_geometry_region_margin_or_bound_is_refused() -> None:
         replay(_proved(), Heli4(), at_least=0.41)
 
 
+def test_other_fvi_bounds_or_another_length_are_refused() -> None:
+    bounds = Heli4.fvi_bounds
+    assert replay(_proved(), Heli4(), bounds=bounds, characteristic_length=Heli4().characteristic_length) > 0
+    with pytest.raises(OtherCertificate, match="FVI bounds"):
+        replay(_proved(), Heli4(), bounds=replace(bounds, force=bounds.force + 1.0))
+    with pytest.raises(OtherCertificate, match="characteristic length"):
+        replay(_proved(), Heli4(), characteristic_length=0.01)
+
+
+def test_a_number_of_boxes_that_its_list_does_not_have_is_caught() -> None:
+    with pytest.raises(BrokenCertificate, match="boxes"):
+        replay(replace(_proved(), boxes=_proved().boxes - 1), Heli4())
+
+
 def test_a_raised_bound_or_a_grown_region_is_caught() -> None:
     for change in ({"at_least": 0.43}, {"region": Cylinder(radius=0.8, z=(-0.8, -0.6), theta=(-PI, PI))}):
         with pytest.raises(BrokenCertificate):
@@ -166,8 +182,16 @@ def test_a_broken_file_is_named(tmp_path: Path) -> None:
     whole = path.read_bytes()
     for content in (b"", b"not an archive", whole[: len(whole) // 2]):
         path.write_bytes(content)
-        with pytest.raises(BrokenCertificate, match="cannot be read"):
+        with pytest.raises(UnreadableCertificate, match=f"{path.name} cannot be read") as caught:
             load_certificate(path)
+        assert caught.value.exit_status == 2
+    rng = np.random.default_rng(5)
+    for _ in range(300):
+        damaged = bytearray(whole)
+        damaged[int(rng.integers(len(whole)))] ^= int(rng.integers(1, 256))
+        path.write_bytes(damaged)
+        with suppress(UnreadableCertificate):  # a byte that zip and numpy pass over may change
+            assert (load_certificate(path).codes == _proved().codes).all(), "seed 5"
     np.savez(path, header=np.array("{}"), counterexample=np.empty(0), codes=np.empty(0, np.int8), left=np.empty(0))
     with pytest.raises(BrokenCertificate):
         load_certificate(path)

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import pytest
 
 import kinematics
+from tests.studies.command_line import SMALL, SmallRun, linkwright
 
 STUDY = """\
 title = "Fake on its prototype"
@@ -61,6 +62,11 @@ speed = 20
 acceleration = 450
 torque = 127
 jerk = 1e5
+
+[certify]
+margins = ["J_x", "fvi"]
+tolerance = 0.02
+most_boxes = 1000
 """
 
 MINIMAL = """\
@@ -126,3 +132,10 @@ def study_text() -> str:
 @pytest.fixture
 def minimal_text() -> str:
     return MINIMAL
+
+
+@pytest.fixture(scope="session")
+def small_run(tmp_path_factory: pytest.TempPathFactory) -> SmallRun:
+    folder = tmp_path_factory.mktemp("small")
+    (folder / "study.toml").write_text(SMALL)
+    return folder, linkwright("run", folder / "study.toml", "--out", folder / "out", "--commit", "--json")

@@ -41,6 +41,7 @@ def test_what_is_left_out_takes_its_default(write: Write, minimal_text: str) -> 
     study = load_study(write(minimal_text))
     assert (study.geometry, study.requirement) == ({}, ())
     assert (study.fvi, study.optimise, study.trajectory) == (None, None, None)
+    assert (study.certify.margins, study.certify.tolerance) == (None, 0.01)
 
 
 def test_a_joint_speed_in_rpm_is_read_in_rad_per_s(write: Write, study_text: str) -> None:

@@ -1,0 +1,115 @@
+"""`linkwright run`: what it writes, and what it leaves alone when it fails."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.studies.command_line import SMALL, SmallRun, linkwright
+from trajectory import read_setpoints
+
+
+@pytest.fixture(autouse=True)
+def fake_mechanism() -> None:
+    """The real mechanisms here, in place of the other files' stand-in."""
+
+
+def test_a_run_writes_optimum_report_and_set_points_and_says_so(
+    small_run: SmallRun,
+) -> None:
+    folder, ended = small_run
+    assert ended.returncode == 0, ended.stderr
+    data = json.loads(ended.stdout)
+    assert data["worst"]["fvi"]["value"] > data["prototype"]["fvi"]
+    certificates = {"certificates/internal_determinant.npz", "certificates/J_q.npz"}
+    of_the_run = {"optimum.toml", *certificates, "report.html", "mechanism.png", "cycle.csv"}
+    assert {Path(f) for f in data["files"]} == {folder / "out" / f for f in of_the_run} | {
+        folder / f for f in ("optimum.toml", *certificates)
+    }
+    for name in ("optimum.toml", *certificates):
+        assert (folder / name).read_bytes() == (folder / "out" / name).read_bytes()
+    points = read_setpoints(folder / "out" / "cycle.csv")
+    np.testing.assert_allclose(np.diff(points.time), 0.002, rtol=1e-9)
+    np.testing.assert_allclose(points.pose[0], points.pose[-1], atol=1e-9)
+    assert max(data["cycle"]["peak_over_limit"].values()) <= 1.0
+    assert not [f for f in (folder / "out").iterdir() if f.name.startswith(".")]
+
+
+def test_the_report_opens_offline(small_run: SmallRun) -> None:
+    page = (small_run[0] / "out" / "report.html").read_text()
+    sources = re.findall(r'(?:src|href)="([^"]{0,40})', page)
+    assert len(sources) >= 5
+    assert all(source.startswith("data:image/png;base64,") for source in sources)
+    assert "nan" not in re.sub(r'src="[^"]*"', "", page).lower().split()
+
+
+def test_a_run_proves_its_requirements_and_shows_it(small_run: SmallRun) -> None:
+    folder, ended = small_run
+    proofs = {proof["margin"]: proof for proof in json.loads(ended.stdout)["proofs"]}
+    assert {proof["status"] for proof in proofs.values()} == {"proved"}
+    assert proofs["internal_determinant"]["at_least"] == 0.4
+    assert 0.0 <= proofs["J_q"]["gap"] <= 0.0201 * proofs["J_q"]["sampled"]
+    page = (folder / "out" / "report.html").read_text()
+    for proof in proofs.values():
+        assert f"{proof['margin']} &gt;= {proof['at_least']:.7g}" in page
+        assert f">{proof['boxes']}<" in page
+    for certificate in (folder / "certificates").iterdir():
+        assert certificate.stat().st_size < 200_000
+
+
+def test_a_run_is_reproducible_from_the_study_alone(small_run: SmallRun, tmp_path: Path) -> None:
+    again = tmp_path / "study.toml"
+    again.write_text(SMALL)
+    assert linkwright("run", again, "--out", tmp_path / "out").returncode == 0
+    for name in ("optimum.toml", "cycle.csv", "certificates/J_q.npz"):
+        assert (tmp_path / "out" / name).read_bytes() == (small_run[0] / "out" / name).read_bytes()
+
+
+def test_a_failing_run_exits_1_and_leaves_what_was_there(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(SMALL.replace("at_least = 0.4", "at_least = 0.999"))
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "optimum.toml").write_text("of an earlier day")
+    ended = linkwright("run", tmp_path, "--out", out)
+    assert ended.returncode == 1
+    assert "internal_determinant >= 0.999 falls short" in ended.stderr
+    assert (out / "optimum.toml").read_text() == "of an earlier day"
+    assert [f.name for f in out.iterdir()] == ["optimum.toml"]
+
+
+def test_a_given_geometry_that_fails_its_requirement_writes_nothing(tmp_path: Path) -> None:
+    given = re.sub(r"\[optimise\].*?(?=\[\[requirement)", "", SMALL, flags=re.DOTALL)
+    (tmp_path / "study.toml").write_text(given.replace("at_least = 0.4", "at_least = 0.99"))
+    for command in ("run", "report"):
+        ended = linkwright(command, tmp_path, "--out", tmp_path / "out")
+        assert ended.returncode == 1, ended.stderr
+        assert re.search(r"internal_determinant: found 0\.\d+ at pose \(.*\); expected at least 0\.99", ended.stderr)
+        assert not list((tmp_path / "out").iterdir())
+
+
+def test_an_interrupt_ends_a_run_at_once_even_inside_the_solver(tmp_path: Path) -> None:
+    call = [
+        sys.executable,
+        "-c",
+        "from studies.cli import main; main()",
+        "run",
+        "heli4",
+        "--out",
+        str(tmp_path / "out"),
+    ]
+    for wait in (3.0, 6.0):
+        running = subprocess.Popen(call, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        time.sleep(wait)
+        running.send_signal(signal.SIGINT)
+        _, error = running.communicate(timeout=20)
+        assert running.returncode == 130
+        assert "interrupted" in error
+    assert not list((tmp_path / "out").iterdir())
