@@ -17,7 +17,7 @@ import numpy as np
 from kinematics import InvalidValue
 from trajectory.errors import SetpointFileError
 from trajectory.files import write_files
-from trajectory.path import POSE_NAMES, Array
+from trajectory.path import SCHOENFLIES, Array
 from trajectory.setpoints import Setpoints
 
 FORMAT = "linkwright set-points 1"
@@ -71,7 +71,7 @@ def read_setpoints(file: FilePath | str) -> Setpoints:
     header = _read_header(file, lines)
     names, units = header.pop("joints"), header.pop("units")
     above = len(header) + 3  # the format's line, joints and units
-    joint_units = units[1 + len(POSE_NAMES) :][: len(names)]
+    joint_units = units[1 + len(SCHOENFLIES) :][: len(names)]
     try:
         empty = Setpoints.of_table(np.zeros((0, 5 + 4 * len(names))), names, joint_units, header)
     except InvalidValue as error:

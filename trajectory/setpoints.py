@@ -14,7 +14,7 @@ from kinematics.drives import from_actuators
 from trajectory.cycle import Cycle, Piece, periods_of
 from trajectory.limits import Limits
 from trajectory.motion import Motion, motion_along
-from trajectory.path import POSE_NAMES, Array
+from trajectory.path import SCHOENFLIES, Array
 
 CONVENTIONS = (
     "one row a period; the last row of a cycle is the first of the next one",
@@ -55,7 +55,7 @@ class Setpoints:
     def __post_init__(self) -> None:
         rows = self.time.shape[0]
         groups = dict.fromkeys(("joints", "speed", "acceleration", "torque"), self.joint_names)
-        for name, columns in {"pose": POSE_NAMES, **groups}.items():
+        for name, columns in {"pose": SCHOENFLIES, **groups}.items():
             if getattr(self, name).shape != (rows, len(columns)):
                 raise InvalidShape(f"Setpoints {name}", columns, getattr(self, name).shape)
         if len(self.joint_units) != len(self.joint_names) or not set(self.joint_units) <= {"rad", "m"}:
@@ -65,7 +65,7 @@ class Setpoints:
     def columns(self) -> tuple[str, ...]:
         """Names of the columns of `table`."""
         groups = ("", "_speed", "_acceleration", "_torque")
-        return ("t", *POSE_NAMES, *(f"{name}{group}" for group in groups for name in self.joint_names))
+        return ("t", *SCHOENFLIES, *(f"{name}{group}" for group in groups for name in self.joint_names))
 
     @property
     def units(self) -> tuple[str, ...]:

@@ -18,7 +18,7 @@ from kinematics import InvalidValue, Mechanism
 from kinematics.drives import from_actuators
 from trajectory.limits import Limits
 from trajectory.motion import Motion, motion_along
-from trajectory.path import Array, Path, require_schoenflies
+from trajectory.path import Array, Path, require_poses_of
 from trajectory.timing import TimeLaw
 
 LEAST_PARTS = 10  # of each interval of the law
@@ -113,7 +113,7 @@ def verify(robot: Mechanism, path: Path, law: TimeLaw, limits: Limits, payload: 
     """Measure a timed path against its limits.
 
     Args:
-        robot: any mechanism whose pose is [x, y, z, theta].
+        robot: any mechanism with the path's kind of pose.
         path: of the pose.
         law: how it is travelled; from rest to rest over the whole path.
         limits: of joints and tool. Where s'' jumps, a jerk limit fails with an infinite peak.
@@ -122,7 +122,7 @@ def verify(robot: Mechanism, path: Path, law: TimeLaw, limits: Limits, payload: 
     Raises:
         InvalidValue: the law's arc length is not the path's, or another kind of pose.
     """
-    require_schoenflies(robot)
+    require_poses_of(robot, path)
     ends = (law.position[0], law.position[-1])
     if not np.allclose(ends, (0.0, path.length), rtol=0.0, atol=1e-9 * path.length):
         raise InvalidValue("arc length of the time law", ends, f"(0, {path.length:.9g}) m, the path's")
