@@ -109,3 +109,10 @@ def smallest(components: ca.SX) -> ca.SX:
     for i in range(1, components.numel()):
         result = ca.fmin(result, components[i])
     return result
+
+
+def sides(component: ca.SX) -> list[ca.SX]:
+    """The numbers of which a component is the minimum; itself where it is none."""
+    if component.op() == ca.OP_FMIN:
+        return [*sides(component.dep(0)), *sides(component.dep(1))]
+    return [component]

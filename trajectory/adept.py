@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass, fields
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -90,7 +91,7 @@ class AdeptCycle:
         return self.lift if self.place_lift is None else self.place_lift
 
     @classmethod
-    def of_size(cls, size: str, **others: float) -> AdeptCycle:
+    def of_size(cls, size: str, **others: Any) -> AdeptCycle:
         """A standard size, such as "25/305/25".
 
         Args:
@@ -106,7 +107,7 @@ class AdeptCycle:
         return cls(lift=lift, span=span, place_lift=place_lift, **others)
 
     @classmethod
-    def centred(cls, centre: tuple[float, float, float], span: float = 0.305, **others: float) -> AdeptCycle:
+    def centred(cls, centre: tuple[float, float, float], span: float = 0.305, **others: Any) -> AdeptCycle:
         """The cycle whose pick and place lie symmetrically about a point at the pick's height.
 
         Args:
@@ -120,9 +121,7 @@ class AdeptCycle:
         return cls(span=span, pick=pick, **others)
 
     @classmethod
-    def between(
-        cls, pick: tuple[float, float, float], place: tuple[float, float, float], **others: float
-    ) -> AdeptCycle:
+    def between(cls, pick: tuple[float, float, float], place: tuple[float, float, float], **others: Any) -> AdeptCycle:
         """The cycle from one point to another [m], which must not lie above it; `others` are further fields."""
         across, along = place[0] - pick[0], place[1] - pick[1]
         heading, rise = math.atan2(along, across), place[2] - pick[2]

@@ -3,13 +3,15 @@
 In a corner of arc length l the tangent turns by alpha, from one leg towards the other, by phi = alpha S5(u), u = s / l,
 S5 the quintic smoothstep: the curvature and its derivative vanish at both ends, so the path is G3. From the corner's
 start it goes l C along the first leg and l S across it, C and S the integrals of cos(phi) and sin(phi) over [0, u].
-As S5(1 - u) = 1 - S5(u), a corner is its own mirror image and takes the same blend b off both legs: l S(1) = b sin(alpha).
+As S5(1 - u) = 1 - S5(u), a corner is its own mirror image and takes the same blend b off both legs:
+l S(1) = b sin(alpha).
 A straight leg is a corner with alpha = 0. Angles change by S7, the septic smoothstep.
 """
 
 from __future__ import annotations
 
 from functools import cache
+from typing import TypeVar
 
 import casadi as ca
 import numpy as np
@@ -19,16 +21,17 @@ from kinematics.motion import derivatives_along
 from kinematics.program import Program
 
 Array = np.ndarray
+Number = TypeVar("Number", Array, ca.SX)
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)  # exact to rounding: the integrands are entire functions
 _NODES, _WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2
 
 
-def quintic(u: Array) -> Array:
+def quintic(u: Number) -> Number:
     """S5, (...,) in [0, 1] -> (...,)."""
     return u**3 * (10 + u * (-15 + 6 * u))
 
 
-def septic(w: Array) -> Array:
+def septic(w: Number) -> Number:
     """S7, (...,) in [0, 1] -> (...,)."""
     return w**4 * (35 + w * (-84 + w * (70 - 20 * w)))
 

@@ -11,7 +11,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +18,7 @@ import numpy as np
 from kinematics import InvalidValue
 from kinematics.interpreter import evaluate
 from trajectory.corner import corner_length, quintic, septic, septic_program, tangent_program, turned
+from trajectory.errors import InvalidPath
 from trajectory.path import Array, Path, PathBox, checked_arc_length, pieces, places
 
 _STRAIGHT = 1e-12  # rad: a turn that is rounding
@@ -36,8 +36,9 @@ class RoundedPath:
         blends: (k - 2,) what each corner takes off both of its legs [m]; 0 stops there.
 
     Raises:
-        InvalidValue: a value that is not finite, two equal points in a row, a reversal that is to be rounded, or
+        InvalidPath: a value that is not finite, two equal points in a row, a reversal that is to be rounded, or
             corners that overlap; the pose is named, counted from 1.
+        InvalidValue: numbers of poses, coordinates or blends that do not fit together.
     """
 
     pose_names: tuple[str, ...]
@@ -46,7 +47,7 @@ class RoundedPath:
 
     def __post_init__(self) -> None:
         _require_complete(self)
-        _ = self._layout  # whether the corners fit
+        self._layout  # noqa: B018  raises where the corners do not fit
 
     @property
     def length(self) -> float:
@@ -119,7 +120,9 @@ class RoundedPath:
     @cached_property
     def _layout(self) -> _Layout:
         points = np.array([pose[: places(self.pose_names)] for pose in self.poses], dtype=float)
-        return _laid_out(points, (0.0, *self.blends, 0.0))
+        blends = (0.0, *self.blends, 0.0)
+        _require_room(points, blends)
+        return _laid_out(points, blends)
 
     @cached_property
     def _angles(self) -> list[tuple[Array, Array]]:
@@ -158,6 +161,8 @@ def _laid_out(points: Array, blends: Sequence[float]) -> _Layout:
         if k + 1 == len(legs):
             break
         alpha, across = _turn(unit, units[k + 1])
+        if alpha > _CUSP and blends[k + 1] > 0.0:
+            raise InvalidPath(k + 2, "blend", blends[k + 1], "0 m: where a path reverses it has to stop")
         length = corner_length(alpha, blends[k + 1])
         at.append(travelled + length / 2)
         if length > 0.0:
@@ -201,34 +206,29 @@ def _angle_bounds(at: Array, values: Array, low: Array, high: Array) -> tuple[Ar
 
 
 def _require_complete(path: RoundedPath) -> None:
-    """Raise InvalidValue where the fields do not make a path."""
-    count, n = places(path.pose_names), len(path.pose_names)
-    if len(path.poses) < 2 or any(len(pose) != n for pose in path.poses):
+    """Raise InvalidPath or InvalidValue where the fields do not make a path."""
+    n, inner = len(path.pose_names), len(path.poses) - 2
+    if inner < 0 or any(len(pose) != n for pose in path.poses):
         raise InvalidValue("poses of a path", path.poses, f"at least 2, each with {', '.join(path.pose_names)}")
-    if len(path.blends) != len(path.poses) - 2:
-        raise InvalidValue(
-            "blends of a path", path.blends, f"{len(path.poses) - 2}, one for each pose between the ends"
-        )
+    if len(path.blends) != inner:
+        raise InvalidValue("blends of a path", path.blends, f"{inner}, one for each pose between the ends")
     for k, pose in enumerate(path.poses, start=1):
-        needed = n if k in (1, len(path.poses)) else count
-        for i, (name, value) in enumerate(zip(path.pose_names, pose, strict=True)):
-            if (value is None and i < needed) or (value is not None and not math.isfinite(value)):
-                raise InvalidValue(f"{name} of pose {k}", value, "a finite number")
+        needed = path.pose_names if k in (1, inner + 2) else path.pose_names[: places(path.pose_names)]
+        for name, value in zip(path.pose_names, pose, strict=True):
+            if (value is None and name in needed) or (value is not None and not math.isfinite(value)):
+                raise InvalidPath(k, name, value, "a finite number")
     for k, blend in enumerate(path.blends, start=2):
         if not (math.isfinite(blend) and blend >= 0.0):
-            raise InvalidValue(f"blend at pose {k}", blend, "a length >= 0 m")
-    points = np.array([pose[:count] for pose in path.poses], dtype=float)
-    blends = (0.0, *path.blends, 0.0)
-    for k, (leg, both) in enumerate(
-        zip(np.linalg.norm(np.diff(points, axis=0), axis=1), pairwise(blends), strict=True), 1
-    ):
+            raise InvalidPath(k, "blend", blend, "a length >= 0 m")
+
+
+def _require_room(points: Array, blends: Sequence[float]) -> None:
+    """Raise InvalidPath where a leg has no length or the corners at its ends overlap."""
+    for k, leg in enumerate(np.linalg.norm(np.diff(points, axis=0), axis=1), start=1):
         if not leg > 0.0:
-            raise InvalidValue(f"place of pose {k + 1}", points[k].tolist(), f"another place than that of pose {k}")
-        if sum(both) > leg * (1.0 + _STRAIGHT):
-            raise InvalidValue(
-                f"blends at poses {k} and {k + 1}", both, f"at most {leg:.9g} m together, the leg's length"
-            )
-    for k, (a, b, c) in enumerate(zip(points, points[1:], points[2:], strict=False), start=2):
-        u, v = (b - a) / np.linalg.norm(b - a), (c - b) / np.linalg.norm(c - b)
-        if path.blends[k - 2] > 0.0 and _turn(u, v)[0] > _CUSP:
-            raise InvalidValue(f"blend at pose {k}", path.blends[k - 2], "0 m: where a path reverses it has to stop")
+            raise InvalidPath(k + 1, "place", points[k].tolist(), f"another one than that of pose {k}")
+        both = blends[k - 1] + blends[k]
+        if both > leg * (1.0 + _STRAIGHT):
+            at = k if blends[k - 1] > blends[k] else k + 1
+            expected = f"with its neighbour's at most the {leg:.9g} m from pose {k} to pose {k + 1}, not {both:.9g} m"
+            raise InvalidPath(at, "blend", blends[at - 1], expected)
