@@ -171,7 +171,8 @@ def _header(before: Cycle, after: Cycle, period: float, counts: Sequence[int]) -
         "cycle time after stretching [s]": after.duration,
         "payloads [kg]": [float(piece.payload) for piece in before.pieces],
     }
-    header |= {f"path {name}": value for name, value in before.pieces[0].path.as_dict().items()}
+    header |= {f"path {name}": value for name, value in before.path.as_dict().items()}
+    header["proved margins"] = before.certificate.margins
     for k, piece in enumerate(after.pieces):
         found = piece.timed.verification
         header[f"peak over limit, piece {k + 1}, after stretching"] = dict(found.peak_over_limit)
