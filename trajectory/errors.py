@@ -34,8 +34,6 @@ class PathRefused(LinkwrightError):
     bound of the margin there where it fails, and its best lower bound where it is undecided.
     """
 
-    exit_status = 1
-
     def __init__(
         self, margin: str, at: float, pose: Sequence[float], limb: int | None, bound: float, proved: bool
     ) -> None:
@@ -43,8 +41,8 @@ class PathRefused(LinkwrightError):
         self.pose = tuple(float(v) for v in pose)
         where = f"path at s = {at:.6g} m, pose ({', '.join(f'{v:.6g}' for v in self.pose)})"
         of_limb = "" if limb is None else f" of limb {limb}"
-        is_at = "at most" if proved else "undecided, proved is at least"
-        super().__init__(f"{where}: {margin}{of_limb} is {is_at} {bound:.6g}; expected above 0")
+        found = f"at most {bound:.6g}" if proved else f"undecided, proved is at least {bound:.6g}"
+        super().__init__(f"{where}: the {margin} margin{of_limb} is {found}; expected above 0")
 
 
 class TimingFailed(LinkwrightError):

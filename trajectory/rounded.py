@@ -169,7 +169,7 @@ def _laid_out(points: Array, blends: Sequence[float]) -> _Layout:
             rows.append((length, alpha, points[k + 1] - blends[k + 1] * unit, unit, across))
             travelled += length
         elif alpha > 0.0:
-            stops.append(travelled)
+            stops.append(float(travelled))
     lengths, alphas, starts, along, across_ = (np.array(column) for column in zip(*rows, strict=True))
     edges = np.concatenate([[0.0], np.cumsum(lengths)])
     return _Layout(edges, lengths, alphas, starts, along, across_, np.array([*at, edges[-1]]), tuple(stops))

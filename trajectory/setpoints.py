@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -154,12 +155,21 @@ def robot_header(robot: Mechanism, limits: Limits) -> dict[str, Any]:
         "made by": f"linkwright {version('linkwright')}",
         "mechanism": type(robot).__name__,
         "coordinates": (type(robot).__doc__ or "").splitlines()[0],
-        "geometry": robot.geometry.as_dict(),
+        "geometry": _spelled(robot.geometry.as_dict()),
         "geometry hash": robot.geometry.digest,
         "inertia": str(robot.inertia),
     }
     header |= {f"limit {name}": value for name, value in limits.as_dict().items()}
     return header | {"conventions": list(CONVENTIONS), "assumptions": list(ASSUMPTIONS)}
+
+
+def _spelled(value: Any) -> Any:
+    """Plain data with words for infinite numbers, which JSON has not: a leg may be of any length."""
+    if isinstance(value, dict):
+        return {key: _spelled(entry) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [_spelled(entry) for entry in value]
+    return str(value) if isinstance(value, float) and math.isinf(value) else value
 
 
 def _header(before: Cycle, after: Cycle, period: float, counts: Sequence[int]) -> dict[str, Any]:

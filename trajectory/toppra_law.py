@@ -149,9 +149,12 @@ def _solve(grid: Array, bound: Array, rows: list[Coefficients], asked: dict[str,
         raise TimingFailed("toppra", asked, "the path's coefficients are not finite: a singular pose on it")
     # toppra asks for a path, but all that its algorithm reads from it is the interval [0, 1].
     unit = SimplePath(np.array([0.0, 1.0]), np.array([[0.0], [1.0]]))
-    constraints = [SpeedBound(bound), *(SymmetricRows(r) for r in rows)]
+    # In a unit of time in which u and x are about 1: the solver's tolerances are absolute.
+    unit_squared = min([float(bound.max()), *(1.0 / float(np.abs(a).max()) for a, _, _ in rows)])
+    scaled = [(a * unit_squared, b * unit_squared, c) for a, b, c in rows]
+    constraints = [SpeedBound(bound / unit_squared), *(SymmetricRows(r) for r in scaled)]
     problem = TOPPRA(constraints, unit, gridpoints=grid, solver_wrapper="seidel")
     _, speed, _ = problem.compute_parameterization(0.0, 0.0)
     if speed is None or not np.isfinite(speed).all():
         raise TimingFailed("toppra", asked, f"no solution ({problem.problem_data.return_code.name})")
-    return np.asarray(speed)
+    return np.asarray(speed) * math.sqrt(unit_squared)

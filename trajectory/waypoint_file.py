@@ -48,7 +48,7 @@ def read_waypoints(file: FilePath | str, pose_names: Sequence[str]) -> RoundedPa
 
 def _cells(file: FilePath, number: int, line: str) -> list[str]:
     try:
-        (cells,) = csv.reader([line], strict=True)
+        (cells,) = csv.reader([line], strict=True, skipinitialspace=True)
     except csv.Error as error:
         raise WaypointFileError(file, number, "", str(error), "comma-separated cells") from error
     return [cell.strip() for cell in cells]
