@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kinematics import Mechanism
 
 # Without a known mechanism nothing can be said about these.
-_OF_THE_MECHANISM = ("geometry", "region", "optimise", "requirement")
+_OF_THE_MECHANISM = ("geometry", "region", "optimise", "requirement", "trajectory")
 
 
 def load_study(path: Path) -> Study:

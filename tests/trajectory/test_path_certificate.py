@@ -57,7 +57,7 @@ def test_a_leg_too_short_for_a_few_hundredths_of_a_millimetre_is_found_between_s
     base, end = geometry.in_reference_frame()[0], geometry.in_tool_frame()[0]
     height, nearest = 0.15, 0.0777777
     start = np.array([base[0] - end[0], base[1] - end[1] - nearest, base[2] - end[2] + height])
-    far = start + [0.0, 0.2, 0.0]
+    far = start + np.array([0.0, 0.2, 0.0])
     path = RoundedPath(SIX, ((*start.tolist(), 0, 0, 0), (*far.tolist(), 0, 0, 0)), ())
     fields = {"base_points": geometry.base_points, "platform_points": geometry.platform_points}
     robot = GoughStewart(GoughStewart.Geometry(**fields, leg_limits=(height + 1e-9, 2.0)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import mpmath
 import numpy as np
@@ -34,7 +35,7 @@ def place_in_30_digits(path: RoundedPath, s: float) -> list[float]:
     """By quadrature of the tangent from one corner to the next, from the definition alone."""
     with mpmath.workdps(30):
         points = [mpmath.matrix([mpmath.mpf(v) for v in pose[:3]]) for pose in path.poses]
-        steps = [b - a for a, b in zip(points, points[1:], strict=False)]
+        steps = [b - a for a, b in pairwise(points)]
         units = [step / mpmath.norm(step) for step in steps]
         blends = [mpmath.mpf(0), *map(mpmath.mpf, path.blends), mpmath.mpf(0)]
         here, left = points[0], mpmath.mpf(s)

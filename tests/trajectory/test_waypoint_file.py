@@ -79,5 +79,5 @@ def test_a_fault_is_told_with_line_and_column(
 def test_a_file_that_is_empty_missing_or_no_text_is_refused(file: Path, content: bytes | None) -> None:
     if content is not None:
         file.write_bytes(content)
-    with pytest.raises(WaypointFileError, match="waypoints.csv"):
+    with pytest.raises(WaypointFileError, match=r"waypoints\.csv"):
         read_waypoints(file, NAMES)
