@@ -10,7 +10,8 @@ import pytest
 
 from studies.errors import StudyError
 from studies.load import load_study
-from studies.setup import path_of
+from studies.pipeline import time_cycle
+from studies.setup import path_of, robot_of
 from trajectory import AdeptCycle, RoundedPath, WaypointFileError
 
 HEAD = """\
@@ -105,6 +106,18 @@ def test_the_waypoints_belong_to_the_digest(tmp_path: Path) -> None:
         study = load_study(written(tmp_path, '[trajectory.path]\nfile = "way.csv"\npayload = 1.0\n'))
         digests.append(study.digest)
     assert digests[0] != digests[1]
+
+
+def test_a_study_s_waypoints_are_timed_with_a_stop_at_the_corner_without_a_blend(tmp_path: Path) -> None:
+    study = load_study(written(tmp_path, ROWS.replace("blend_mm = 30\n", "")))
+    assert study.trajectory is not None
+    timing = time_cycle(study.trajectory, robot_of(study))
+    assert [len(way) for way in (timing.cycle.there, timing.cycle.back)] == [2, 2]
+    figures = timing.figures()
+    assert figures["half_cycle"] == sum(piece.duration for piece in timing.cycle.there)
+    assert 0.99 < figures["peak_over_limit"]["torque"] <= 1.0
+    assert timing.setpoints.pose[0] == pytest.approx(timing.setpoints.pose[-1], abs=1e-9)
+    assert timing.setpoints.header["path blends"] == [0.0]
 
 
 @pytest.mark.parametrize(
