@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kinematics import Mechanism
 
 # Without a known mechanism nothing can be said about these.
-_OF_THE_MECHANISM = ("geometry", "region", "optimise", "requirement", "trajectory")
+_OF_THE_MECHANISM = ("geometry", "region", "optimise", "requirement")
 
 
 def load_study(path: Path) -> Study:
@@ -39,7 +39,7 @@ def load_study(path: Path) -> Study:
         wrong = set(faults(data, mechanism))
     else:
         table = table_of(Study).updated({"mechanism": Key("one of", choices=mechanism_names())})
-        data = conversion.to_si({key: raw[key] for key in raw if key not in _OF_THE_MECHANISM}, table)
+        data = conversion.to_si(_without_the_mechanism_s(raw), table)
         wrong = {("mechanism",)}
         conversion.reported.update((name,) for name in _OF_THE_MECHANISM)
     try:
@@ -79,6 +79,16 @@ def _with_waypoints(study: Study, file: TomlFile, pose_names: tuple[str, ...]) -
         at = (*key, "waypoint", error.pose - 1)
         raise StudyError([file.problem(at, f"{error.field} {error.found}", error.expected)]) from error
     return study
+
+
+def _without_the_mechanism_s(raw: dict[str, Any]) -> dict[str, Any]:
+    """The tables and rows that do not follow from the mechanism."""
+    data = {key: raw[key] for key in raw if key not in _OF_THE_MECHANISM}
+    trajectory = data.get("trajectory")
+    if isinstance(trajectory, dict) and isinstance(trajectory.get("path"), dict):
+        path = {key: value for key, value in trajectory["path"].items() if key != "waypoint"}
+        data["trajectory"] = {**trajectory, "path": path}
+    return data
 
 
 def _mechanism(name: object) -> type[Mechanism] | None:

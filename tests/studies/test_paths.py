@@ -155,6 +155,12 @@ def test_a_fault_is_told_with_its_key(
     assert problems[0].line is not None
 
 
+def test_an_unknown_mechanism_is_told_without_faults_in_its_waypoints(tmp_path: Path) -> None:
+    with pytest.raises(StudyError) as caught:
+        load_study(written(tmp_path, ROWS, ("Heli5", SCHOENFLIES)))
+    assert [p.key for p in caught.value.problems] == ["mechanism"]
+
+
 def test_a_fault_in_the_file_of_waypoints_is_told_with_line_and_column(tmp_path: Path) -> None:
     (tmp_path / "way.csv").write_text("x,y,z,theta\n0,0,-0.8,0\n0,0,nan,1\n")
     with pytest.raises(WaypointFileError, match=r"way.csv, line 3, column z: found nan"):
