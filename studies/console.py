@@ -122,7 +122,7 @@ def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Ti
     print_table(
         f"Proved at every pose of the path, by {proved.intervals} intervals",
         ("margin", "at least"),
-        [(name, _figure(bound)) for name, bound in proved.margins.items()],
+        proved.rows(),
     )
     for k, piece in enumerate(timing.cycle.there, start=1):
         which = f", piece {k}" if len(timing.cycle.there) > 1 else ""

@@ -46,6 +46,10 @@ class PathCertificate:
     margins: dict[str, float]
     intervals: int
 
+    def rows(self) -> list[tuple[str, str]]:
+        """Each margin and its bound, rounded down, for people."""
+        return [(name, f"{(1.0 - 5e-4) * bound:.4g}") for name, bound in self.margins.items()]
+
 
 def certify_path(robot: Mechanism, path: Path) -> PathCertificate:
     """Prove that every pose of a path is within reach and away from the singularities.
