@@ -29,7 +29,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics import FviBounds, Mechanism
-from kinematics.indices import homogeneous
+from kinematics.indices import homogeneous, sides
 from kinematics.linear import adjugate, determinant, volume
 
 Array = np.ndarray
@@ -87,17 +87,10 @@ def claims_of(robot: Mechanism, margin: str, numbers: Numbers, bound: float, ins
     if maker is not None and bound > 0.0:
         return maker(robot, numbers, inside)
     components = robot.margin_components(margin, numbers.fvi, numbers.length)
-    parts = [part for i in range(components.numel()) for part in _sides(components[i])]
+    parts = [part for i in range(components.numel()) for part in sides(components[i])]
     if bound > 0.0:
         parts = [_signed(robot, p.dep(0), inside) if p.op() == ca.OP_FABS else p for p in parts]
     return Claims(ca.vertcat(*parts) - numbers.bound, ca.SX(0, 0))
-
-
-def _sides(component: ca.SX) -> list[ca.SX]:
-    """A minimum's two sides, each to be shown."""
-    if component.op() == ca.OP_FMIN:
-        return [*_sides(component.dep(0)), *_sides(component.dep(1))]
-    return [component]
 
 
 def _signed(robot: Mechanism, expression: ca.SX, inside: Array) -> ca.SX:

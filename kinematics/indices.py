@@ -125,3 +125,10 @@ def fvi(j_mw: ca.SX, bounds: FviBounds) -> ca.SX:
 def smallest(components: ca.SX) -> ca.SX:
     """Their minimum; the interpreter's FMIN passes NaN on."""
     return reduce(ca.fmin, [components[i] for i in range(components.numel())])
+
+
+def sides(component: ca.SX) -> list[ca.SX]:
+    """The numbers of which a component is the minimum; itself where it is none."""
+    if component.op() == ca.OP_FMIN:
+        return [*sides(component.dep(0)), *sides(component.dep(1))]
+    return [component]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from pathlib import Path as FilePath
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from studies.errors import StudyError
 from studies.mechanisms import mechanism_class
 from studies.schema import CylinderRegion, Study
 from studies.toml_file import read_toml
-from trajectory import AdeptCycle, Limits, Setpoints
+from trajectory import Limits, Path, RoundedPath, Setpoints
 from trajectory.drive_files import Drive, drive_files
 
 OBJECTIVE = "fvi"
@@ -65,12 +65,21 @@ def problem_of(study: Study) -> Problem:
     )
 
 
-def cycle_of(cycle: schema.Cycle) -> AdeptCycle:
-    """The path there."""
-    return AdeptCycle(cycle.lift, cycle.span, cycle.blend, cycle.turn, cycle.pick, cycle.heading)
+def path_of(asked: schema.Trajectory, pose_names: tuple[str, ...]) -> Path:
+    """The path there, of poses with these coordinates.
+
+    Raises:
+        InvalidPath: of a waypoint that does not fit.
+    """
+    if asked.cycle is not None:
+        return schema.adept_cycle(asked.cycle.model_dump(), pose_names=pose_names)
+    assert asked.path is not None
+    waypoints = asked.path.waypoint
+    poses = tuple(tuple(w.coordinates.get(name) for name in pose_names) for w in waypoints)
+    return RoundedPath(pose_names, poses, tuple(w.blend for w in waypoints[1:-1]))
 
 
-def require_cycle_inside(study: Study, file: Path) -> None:
+def require_cycle_inside(study: Study, file: FilePath) -> None:
     """Check that the cycle stays where the geometry is verified.
 
     Raises:
@@ -78,14 +87,15 @@ def require_cycle_inside(study: Study, file: Path) -> None:
     """
     if study.trajectory is None:
         return
-    path = cycle_of(study.trajectory.cycle)
-    (poses,) = path.evaluate(np.linspace(0.0, path.length, 501), 0)
     names = mechanism_class(study.mechanism).pose_names
+    path = path_of(study.trajectory, names)
+    (poses,) = path.evaluate(np.linspace(0.0, path.length, 501), 0)
     inside = region_of(study).contains(poses, names, slack=1e-9)
     if not inside.all():
         pose = ", ".join(f"{v:.4g}" for v in poses[int(np.argmin(inside))])
-        expected = f"a cycle inside the region, {region_of(study)}"
-        problem = read_toml(file).problem(("trajectory", "cycle"), f"the pose ({pose}) on it", expected)
+        key = "path" if study.trajectory.cycle is None else "cycle"
+        expected = f"a {key} inside the region, {region_of(study)}"
+        problem = read_toml(file).problem(("trajectory", key), f"the pose ({pose}) on it", expected)
         raise StudyError([problem])
 
 
@@ -94,7 +104,7 @@ def drive_of(drive: schema.Drive) -> Drive:
     return Drive(drive.axes, drive.increments, drive.gear)
 
 
-def require_drive_files(study: Study, file: Path) -> None:
+def require_drive_files(study: Study, file: FilePath) -> None:
     """Write the drive files of the cycle's path to nowhere, before hours of work go into the real ones.
 
     Raises:
@@ -106,19 +116,21 @@ def require_drive_files(study: Study, file: Path) -> None:
     try:
         drive = drive_of(asked.drive)
         if set(asked.files) != {"csv"}:
-            drive_files("cycle", _along(robot_of(study), cycle_of(asked.cycle), asked.period), asked.files, drive)
+            robot = robot_of(study)
+            at_rest = _along(robot, path_of(asked, robot.pose_names), asked.period)
+            drive_files("cycle", at_rest, asked.files, drive)
     except InvalidValue as error:
         problem = read_toml(file).problem(("trajectory", "files"), f"{error.what} {error.found}", error.expected)
         raise StudyError([problem]) from error
 
 
-def _along(robot: Mechanism, path: AdeptCycle, period: float) -> Setpoints:
+def _along(robot: Mechanism, path: Path, period: float) -> Setpoints:
     """Set-points at rest all along the path; zero where a limb cannot reach, which is told elsewhere."""
     (poses,) = path.evaluate(np.linspace(0.0, path.length, 101), 0)
     joints = np.nan_to_num(to_actuators(robot, robot.inverse(poses)))
     table = np.hstack([np.arange(101)[:, None] * period, poses, joints, np.zeros((101, 3 * joints.shape[1]))])
     header = {"period [s]": period, "periods": [100]}
-    return Setpoints.of_table(table, robot.actuator_names, robot.actuator_units, header)
+    return Setpoints.of_table(table, robot.pose_names, robot.actuator_names, robot.actuator_units, header)
 
 
 def limits_of(limits: schema.Limits) -> Limits:

@@ -8,20 +8,31 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from trajectory.adept import AdeptCycle
+from trajectory.adept import STANDARD_SIZES, AdeptCycle
 from trajectory.cycle import Cycle, Piece, there_and_back
 from trajectory.emergency_stop import EmergencyStop, emergency_stop
-from trajectory.errors import LimitsExceeded, RoughPath, SetpointFileError, TimingFailed
+from trajectory.errors import (
+    InvalidPath,
+    LimitsExceeded,
+    PathRefused,
+    RoughPath,
+    SetpointFileError,
+    TimingFailed,
+    WaypointFileError,
+)
 from trajectory.files import CannotWrite, require_writable, write_files
 from trajectory.limits import Limits
 from trajectory.motion import Motion, PoseMotion, motion_of, pose_motion
-from trajectory.path import Path, Reversed, require_smooth
+from trajectory.path import Part, Path, Reversed, require_smooth
+from trajectory.path_certificate import PathCertificate, certify_path
 from trajectory.repair import Repaired, repair
+from trajectory.rounded import RoundedPath
 from trajectory.setpoint_file import read_setpoints, write_setpoints
 from trajectory.setpoints import Setpoints, cycle_setpoints
 from trajectory.timed import TimedMotion, TimedPath
 from trajectory.timing import PathMotion, TimeLaw
 from trajectory.verification import Peak, Verification, verify
+from trajectory.waypoint_file import read_waypoints
 
 if TYPE_CHECKING:
     from trajectory.moves import Move, plan_move, plan_stop
@@ -42,22 +53,28 @@ def __getattr__(name: str) -> Any:
 
 
 __all__ = [
+    "STANDARD_SIZES",
     "AdeptCycle",
     "CannotWrite",
     "Cycle",
     "EmergencyStop",
+    "InvalidPath",
     "Limits",
     "LimitsExceeded",
     "Motion",
     "Move",
+    "Part",
     "Path",
+    "PathCertificate",
     "PathMotion",
+    "PathRefused",
     "Peak",
     "Piece",
     "PoseMotion",
     "Repaired",
     "Reversed",
     "RoughPath",
+    "RoundedPath",
     "SetpointFileError",
     "Setpoints",
     "TimeLaw",
@@ -65,6 +82,8 @@ __all__ = [
     "TimedPath",
     "TimingFailed",
     "Verification",
+    "WaypointFileError",
+    "certify_path",
     "cycle_setpoints",
     "emergency_stop",
     "motion_of",
@@ -72,6 +91,7 @@ __all__ = [
     "plan_stop",
     "pose_motion",
     "read_setpoints",
+    "read_waypoints",
     "repair",
     "require_smooth",
     "require_writable",

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path as FilePath
 
-from kinematics.errors import LinkwrightError
+from kinematics.errors import InvalidValue, LinkwrightError
 
 
 class RoughPath(LinkwrightError):
@@ -17,6 +17,32 @@ class RoughPath(LinkwrightError):
             f"path at s = {at:.6g} m: {what} is {found:.4g}, expected at most {bound:.4g}; "
             "split a path where it reverses and time each piece from rest to rest, round its corner, or refine the grid"
         )
+
+
+class InvalidPath(InvalidValue):
+    """A pose, counted from 1, does not fit into its path."""
+
+    def __init__(self, pose: int, field: str, found: object, expected: str) -> None:
+        self.pose, self.field = pose, field
+        super().__init__(f"{field} of pose {pose} of the path", found, expected)
+
+
+class PathRefused(LinkwrightError):
+    """A path passes where a limb cannot reach or the robot is singular, or could not be proved not to.
+
+    `at` is the arc length [m], `limb` counts from 1, None where all limbs together are meant; `bound` is an upper
+    bound of the margin there where it fails, and its best lower bound where it is undecided.
+    """
+
+    def __init__(
+        self, margin: str, at: float, pose: Sequence[float], limb: int | None, bound: float, proved: bool
+    ) -> None:
+        self.margin, self.at, self.limb, self.bound, self.proved = margin, at, limb, bound, proved
+        self.pose = tuple(float(v) for v in pose)
+        where = f"path at s = {at:.6g} m, pose ({', '.join(f'{v:.6g}' for v in self.pose)})"
+        of_limb = "" if limb is None else f" of limb {limb}"
+        found = f"at most {bound:.6g}" if proved else f"undecided, proved is at least {bound:.6g}"
+        super().__init__(f"{where}: the {margin} margin{of_limb} is {found}; expected above 0")
 
 
 class TimingFailed(LinkwrightError):
@@ -47,3 +73,12 @@ class SetpointFileError(LinkwrightError):
     def __init__(self, file: FilePath, line: int, found: str, expected: str) -> None:
         self.file, self.line, self.found, self.expected = file, line, found, expected
         super().__init__(f"{file}, line {line}: found {found}; expected {expected}")
+
+
+class WaypointFileError(LinkwrightError):
+    """A file of waypoints cannot be used; `column` is "" where a line as a whole is meant."""
+
+    def __init__(self, file: FilePath, line: int, column: str, found: str, expected: str) -> None:
+        self.file, self.line, self.column, self.found, self.expected = file, line, column, found, expected
+        where = f"{file}, line {line}" + (f", column {column}" if column else "")
+        super().__init__(f"{where}: found {found}; expected {expected}")

@@ -12,7 +12,7 @@ from trajectory.timing import PathMotion
 
 
 class PoseMotion(NamedTuple):
-    """The pose and its time derivatives, each (..., 4)."""
+    """The pose and its time derivatives, each (..., n)."""
 
     pose: Array
     velocity: Array

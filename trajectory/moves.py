@@ -152,7 +152,9 @@ def _move(
     table = np.concatenate([times[:, None], pose, *dense, torque], axis=1)[::PARTS]
     header = robot_header(robot, limits) | {"laws": ["ruckig"], "payload [kg]": payload} | asked
     header |= {"period [s]": float(period), "periods": [count]}
-    return Move(Setpoints.of_table(table, robot.actuator_names, joint_units, header), count * period, found)
+    return Move(
+        Setpoints.of_table(table, robot.pose_names, robot.actuator_names, joint_units, header), count * period, found
+    )
 
 
 def _require_usable(robot: Mechanism, limits: Limits, period: float) -> None:

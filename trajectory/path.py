@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from itertools import pairwise
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -11,32 +13,59 @@ from kinematics import InvalidValue, Mechanism
 from trajectory.errors import RoughPath
 
 Array = np.ndarray
-POSE_NAMES = ("x", "y", "z", "theta")
+SCHOENFLIES = ("x", "y", "z", "theta")
+HIGHEST_ORDER = 4
 _ROUNDING = 1e-12  # of the length: how far outside [0, length] an arc length may be by rounding alone
 _UNIT = 1e-9  # how far from 1 the length of the tangent may be
 _JUMP = 0.05  # how far the tangent may be from the trapezoid of its derivative between neighbouring samples
 
 
+class PathBox(NamedTuple):
+    """Bounds of the pose and of its first derivative by s over intervals of s, each (k, n)."""
+
+    low: Array
+    high: Array
+    first_low: Array
+    first_high: Array
+
+
 class Path(Protocol):
-    """A path of poses [x, y, z, theta] by the arc length s of the tool point, twice smooth in its tangent."""
+    """A path of poses by the arc length s of the tool point, twice smooth in its tangent.
+
+    The tool point's coordinates, out of x, y and z, stand before the angles.
+    """
+
+    @property
+    def pose_names(self) -> tuple[str, ...]:
+        """(n,) of the pose's coordinates."""
 
     @property
     def length(self) -> float:
         """Arc length of the tool point's path [m]."""
 
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """Arc lengths where its pieces meet, 0 and the length included [m]; between them it is analytic."""
+
     def evaluate(self, s: Array, order: int = 3) -> tuple[Array, ...]:
-        """The pose and its derivatives by arc length.
+        """The pose and its derivatives by arc length; at a knot those of the piece that starts there.
 
         Args:
             s: (...,) arc length in [0, length] [m].
-            order: of the highest derivative, 0 to 3.
+            order: of the highest derivative, 0 to 4.
 
         Returns:
-            order + 1 arrays (..., 4): pose, first, second, third derivative by s.
+            order + 1 arrays (..., n): pose, first to at most fourth derivative by s.
 
         Raises:
-            InvalidValue: an arc length is outside the path, or the order outside 0 to 3.
+            InvalidValue: an arc length is outside the path, or the order outside 0 to 4.
         """
+
+    def enclose(self, low: Array, high: Array) -> PathBox:
+        """Bounds that hold everywhere on intervals (k,) of s, each between two neighbouring knots."""
+
+    def split(self) -> tuple[Path, ...]:
+        """Itself or, where the tangent jumps inside, its parts from one jump to the next, to be timed one by one."""
 
     def as_dict(self) -> dict[str, object]:
         """Plain data that describes the path, for a file's header."""
@@ -49,9 +78,19 @@ class Reversed:
     path: Path
 
     @property
+    def pose_names(self) -> tuple[str, ...]:
+        """(n,)."""
+        return self.path.pose_names
+
+    @property
     def length(self) -> float:
         """Arc length [m]."""
         return self.path.length
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """As `Path.knots`."""
+        return tuple(self.length - s for s in reversed(self.path.knots))
 
     def evaluate(self, s: Array, order: int = 3) -> tuple[Array, ...]:
         """As `Path.evaluate`; odd derivatives change sign."""
@@ -59,19 +98,76 @@ class Reversed:
         derivatives = self.path.evaluate(self.length - s, order)
         return tuple(-d if k % 2 else d for k, d in enumerate(derivatives))
 
+    def enclose(self, low: Array, high: Array) -> PathBox:
+        """As `Path.enclose`."""
+        box = self.path.enclose(self.length - high, self.length - low)
+        return PathBox(box.low, box.high, -box.first_high, -box.first_low)
+
+    def split(self) -> tuple[Path, ...]:
+        """The path's own parts, the last one first."""
+        return tuple(Reversed(part) for part in reversed(self.path.split()))
+
     def as_dict(self) -> dict[str, object]:
         """The path's own data, marked as reversed."""
         return {**self.path.as_dict(), "reversed": True}
+
+
+@dataclass(frozen=True)
+class Part:
+    """A path between two of its arc lengths [m], as a path of its own."""
+
+    path: Path
+    start: float
+    stop: float
+
+    @property
+    def pose_names(self) -> tuple[str, ...]:
+        """(n,)."""
+        return self.path.pose_names
+
+    @property
+    def length(self) -> float:
+        """Arc length [m]."""
+        return self.stop - self.start
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """As `Path.knots`."""
+        inside = [s for s in self.path.knots if self.start < s < self.stop]
+        return tuple(s - self.start for s in (self.start, *inside, self.stop))
+
+    def evaluate(self, s: Array, order: int = 3) -> tuple[Array, ...]:
+        """As `Path.evaluate`; at its end those of the piece that ends there."""
+        s = self.start + checked_arc_length(s, self.length, order)
+        return self.path.evaluate(np.clip(s, self.start, np.nextafter(self.stop, self.start)), order)
+
+    def enclose(self, low: Array, high: Array) -> PathBox:
+        """As `Path.enclose`."""
+        return self.path.enclose(self.start + low, self.start + high)
+
+    def split(self) -> tuple[Path, ...]:
+        """As `Path.split`."""
+        return (self,)
+
+    def as_dict(self) -> dict[str, object]:
+        """The path's own data, and from where to where."""
+        return {**self.path.as_dict(), "from": self.start, "to": self.stop}
+
+
+def pieces(path: Path, stops: Sequence[float]) -> tuple[Path, ...]:
+    """The path itself, or its parts between stops inside it [m]."""
+    edges = [0.0, *stops, path.length]
+    return tuple(Part(path, a, b) for a, b in pairwise(edges)) if stops else (path,)
 
 
 def checked_arc_length(s: Array, length: float, order: int) -> Array:
     """The arc length, with what rounding put outside [0, length] moved to its end.
 
     Raises:
-        InvalidValue: an arc length is outside the path or not a number, or the order outside 0 to 3.
+        InvalidValue: an arc length is outside the path or not a number, or the order outside 0 to 4.
     """
-    if order not in (0, 1, 2, 3):
-        raise InvalidValue("order of a path's derivative", order, "0, 1, 2 or 3")
+    if order not in range(HIGHEST_ORDER + 1):
+        raise InvalidValue("order of a path's derivative", order, f"0 to {HIGHEST_ORDER}")
     s = np.asarray(s, dtype=float)
     slack = _ROUNDING * length
     outside = ~((s >= -slack) & (s <= length + slack))
@@ -80,14 +176,20 @@ def checked_arc_length(s: Array, length: float, order: int) -> Array:
     return np.clip(s, 0.0, length)
 
 
-def require_schoenflies(robot: Mechanism) -> None:
-    """Check that the robot's pose is [x, y, z, theta].
+def places(pose_names: Sequence[str]) -> int:
+    """How many of the pose's coordinates are the tool point's; they stand first."""
+    return sum(name in ("x", "y", "z") for name in pose_names)
+
+
+def require_poses_of(robot: Mechanism, path: Path) -> None:
+    """Check that a path's poses are of the robot's kind.
 
     Raises:
-        InvalidValue: it is something else.
+        InvalidValue: they are of another kind.
     """
-    if robot.pose_names != POSE_NAMES:
-        raise InvalidValue(f"pose of {type(robot).__name__}", robot.pose_names, f"{POSE_NAMES} for a path of this kind")
+    if robot.pose_names != path.pose_names:
+        what = f"pose of the path for {type(robot).__name__}"
+        raise InvalidValue(what, ", ".join(path.pose_names), ", ".join(robot.pose_names))
 
 
 def require_smooth(path: Path, s: Array) -> None:
@@ -104,13 +206,14 @@ def require_smooth(path: Path, s: Array) -> None:
         RoughPath: with the place and the defect; NaN derivatives are refused too.
     """
     _, first, second = path.evaluate(s, 2)
-    unit = np.abs(np.linalg.norm(first[:, :3], axis=-1) - 1.0)
+    count = places(path.pose_names)
+    unit = np.abs(np.linalg.norm(first[:, :count], axis=-1) - 1.0)
     _require_small(unit, s, "the tangent's length minus 1", _UNIT)
     explained = np.diff(s)[:, None] * (second[1:] + second[:-1]) / 2
     jump = np.diff(first, axis=0) - explained
-    _require_small(np.linalg.norm(jump[:, :3], axis=-1), s, "a jump of the tangent", _JUMP)
-    turning = np.abs(first[:, 3]).max()
-    _require_small(np.abs(jump[:, 3]), s, "a jump of d theta / ds [rad/m]", _JUMP * turning)
+    _require_small(np.linalg.norm(jump[:, :count], axis=-1), s, "a jump of the tangent", _JUMP)
+    for k, name in enumerate(path.pose_names[count:], start=count):
+        _require_small(np.abs(jump[:, k]), s, f"a jump of d {name} / ds [rad/m]", _JUMP * np.abs(first[:, k]).max())
 
 
 def _require_small(defect: Array, s: Array, what: str, bound: float) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
@@ -16,7 +17,7 @@ from trajectory.cycle import Cycle, Piece, periods_of
 from trajectory.interpolation import PARTS, between_setpoints
 from trajectory.limits import Limits
 from trajectory.motion import Motion, motion_of
-from trajectory.path import POSE_NAMES, Array
+from trajectory.path import Array, places
 
 CONVENTIONS = (
     "one row a period; the last row of a cycle is the first of the next one",
@@ -36,9 +37,10 @@ class Setpoints:
 
     Attributes:
         time: (k,) [s].
-        pose: (k, 4) x, y, z, theta.
+        pose: (k, n).
         joints, speed, acceleration: (k, m) the joints and their time derivatives.
         torque: (k, m) of the drives.
+        pose_names: (n,) the tool point's coordinates first.
         joint_names: (m,).
         joint_units: (m,) rad or m.
         header: plain data on what the set-points are for, by name.
@@ -50,6 +52,7 @@ class Setpoints:
     speed: Array
     acceleration: Array
     torque: Array
+    pose_names: tuple[str, ...]
     joint_names: tuple[str, ...]
     joint_units: tuple[str, ...]
     header: Mapping[str, Any]
@@ -57,7 +60,7 @@ class Setpoints:
     def __post_init__(self) -> None:
         rows = self.time.shape[0]
         groups = dict.fromkeys(("joints", "speed", "acceleration", "torque"), self.joint_names)
-        for name, columns in {"pose": POSE_NAMES, **groups}.items():
+        for name, columns in {"pose": self.pose_names, **groups}.items():
             if getattr(self, name).shape != (rows, len(columns)):
                 raise InvalidShape(f"Setpoints {name}", columns, getattr(self, name).shape)
         if len(self.joint_units) != len(self.joint_names) or not set(self.joint_units) <= {"rad", "m"}:
@@ -67,31 +70,36 @@ class Setpoints:
     def columns(self) -> tuple[str, ...]:
         """Names of the columns of `table`."""
         groups = ("", "_speed", "_acceleration", "_torque")
-        return ("t", *POSE_NAMES, *(f"{name}{group}" for group in groups for name in self.joint_names))
+        return ("t", *self.pose_names, *(f"{name}{group}" for group in groups for name in self.joint_names))
 
     @property
     def units(self) -> tuple[str, ...]:
         """Units of the columns of `table`."""
+        of_tool = places(self.pose_names)
+        of_pose = ["m"] * of_tool + ["rad"] * (len(self.pose_names) - of_tool)
         effort = ["N m" if unit == "rad" else "N" for unit in self.joint_units]
         rates = (f"{unit}{per}" for per in ("", "/s", "/s^2") for unit in self.joint_units)
-        return ("s", "m", "m", "m", "rad", *rates, *effort)
+        return ("s", *of_pose, *rates, *effort)
 
     def table(self) -> Array:
-        """(k, 5 + 4 m) all columns side by side."""
+        """(k, 1 + n + 4 m) all columns side by side."""
         parts = (self.time[:, None], self.pose, self.joints, self.speed, self.acceleration, self.torque)
         return np.concatenate(parts, axis=1)
 
     @classmethod
     def of_table(
-        cls, table: Array, joint_names: Sequence[str], joint_units: Sequence[str], header: Mapping[str, Any]
+        cls,
+        table: Array,
+        pose_names: Sequence[str],
+        joint_names: Sequence[str],
+        joint_units: Sequence[str],
+        header: Mapping[str, Any],
     ) -> Setpoints:
-        """From the columns side by side (k, 5 + 4 m)."""
-        m = len(joint_names)
-        edges = [1, 5, 5 + m, 5 + 2 * m, 5 + 3 * m]
-        time, pose, joints, speed, acceleration, torque = np.split(table, edges, axis=1)
-        return cls(
-            time[:, 0], pose, joints, speed, acceleration, torque, tuple(joint_names), tuple(joint_units), dict(header)
-        )
+        """From the columns side by side (k, 1 + n + 4 m)."""
+        edges = 1 + len(pose_names) + len(joint_names) * np.arange(4)
+        time, pose, joints, speed, acceleration, torque = np.split(table, [1, *edges], axis=1)
+        names = (tuple(pose_names), tuple(joint_names), tuple(joint_units))
+        return cls(time[:, 0], pose, joints, speed, acceleration, torque, *names, dict(header))
 
     def require_finite(self) -> None:
         """Check that every number is finite.
@@ -144,7 +152,7 @@ def cycle_setpoints(cycle: Cycle, period: float, joint_units: Sequence[str]) -> 
     time = np.round(np.arange(sum(counts) + 1) * period, 12)
     table = np.concatenate([time[:, None], np.concatenate(parts)], axis=1)
     header = _header(cycle, whole, period, counts)
-    setpoints = Setpoints.of_table(table, cycle.robot.actuator_names, joint_units, header)
+    setpoints = Setpoints.of_table(table, cycle.robot.pose_names, cycle.robot.actuator_names, joint_units, header)
     header["between set-points"] = _between(whole, counts, setpoints)
     return replace(setpoints, header=header)
 
@@ -174,12 +182,21 @@ def robot_header(robot: Mechanism, limits: Limits) -> dict[str, Any]:
         "made by": f"linkwright {version('linkwright')}",
         "mechanism": type(robot).__name__,
         "coordinates": (type(robot).__doc__ or "").splitlines()[0],
-        "geometry": robot.geometry.as_dict(),
+        "geometry": _spelled(robot.geometry.as_dict()),
         "geometry hash": robot.geometry.digest,
         "inertia": str(robot.inertia),
     }
     header |= {f"limit {name}": value for name, value in limits.as_dict().items()}
     return header | {"conventions": list(CONVENTIONS), "assumptions": list(ASSUMPTIONS)}
+
+
+def _spelled(value: Any) -> Any:
+    """Plain data with words for infinite numbers, which JSON has not: a leg may be of any length."""
+    if isinstance(value, dict):
+        return {key: _spelled(entry) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [_spelled(entry) for entry in value]
+    return str(value) if isinstance(value, float) and math.isinf(value) else value
 
 
 def _header(before: Cycle, after: Cycle, period: float, counts: Sequence[int]) -> dict[str, Any]:
@@ -191,7 +208,8 @@ def _header(before: Cycle, after: Cycle, period: float, counts: Sequence[int]) -
         "cycle time after stretching [s]": after.duration,
         "payloads [kg]": [float(piece.payload) for piece in before.pieces],
     }
-    header |= {f"path {name}": value for name, value in before.pieces[0].path.as_dict().items()}
+    header |= {f"path {name}": value for name, value in before.path.as_dict().items()}
+    header["proved margins"] = before.certificate.margins
     for k, piece in enumerate(after.pieces):
         found = piece.timed.verification
         header[f"peak over limit, piece {k + 1}, after stretching"] = dict(found.peak_over_limit)

@@ -29,7 +29,7 @@ from kinematics.dynamics import inverse_dynamics
 from kinematics.motion import actuator_motion
 from trajectory.errors import TimingFailed
 from trajectory.limits import Limits
-from trajectory.path import Array, Path, require_schoenflies, require_smooth
+from trajectory.path import Array, Path, places, require_poses_of, require_smooth
 from trajectory.timed import TimedPath
 from trajectory.timing import TimeLaw
 
@@ -43,7 +43,7 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     """The fastest law from rest to rest on the path.
 
     Args:
-        robot: any mechanism whose pose is [x, y, z, theta].
+        robot: any mechanism with the path's kind of pose.
         path: smooth, without a cusp.
         limits: of joints and tool; without jerk.
         payload: mass at the tool [kg].
@@ -55,7 +55,7 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
         UnreachablePose: a limb cannot reach a pose of the path; the limb and its margin are named.
         TimingFailed: there is no law within the limits, as where the weight alone is beyond the torque.
     """
-    require_schoenflies(robot)
+    require_poses_of(robot, path)
     if limits.jerk is not None:
         raise InvalidValue("Limits jerk for the toppra law", limits.jerk, "None: its s'' is bang-bang")
     if intervals < LEAST_INTERVALS:
@@ -83,7 +83,8 @@ def _path_limits(
     speed = limits.of_joints("speed", count)
     with np.errstate(divide="ignore"):  # joints at rest bound nothing; `_solve` refuses what is not finite
         highest = (np.abs(joints.first) / speed).max(axis=-1) ** -2.0
-    tangent = np.linalg.norm(first[:, :3], axis=-1)
+    tool = places(robot.pose_names)
+    tangent = np.linalg.norm(first[:, :tool], axis=-1)
     if limits.tool_speed is not None:
         highest = np.minimum(highest, (limits.tool_speed / tangent) ** 2)
     rows: list[Coefficients] = []
@@ -96,7 +97,7 @@ def _path_limits(
         by_x = inverse_dynamics(robot, payload, pose, first, second) - weight
         rows.append((by_u / torque, by_x / torque, weight / torque))
     if limits.tool_acceleration is not None:
-        rows.append(_tool_rows(first[:, :3], second[:, :3], limits.tool_acceleration))
+        rows.append(_tool_rows(first[:, :tool], second[:, :tool], limits.tool_acceleration))
     return highest, rows
 
 
@@ -148,9 +149,12 @@ def _solve(grid: Array, bound: Array, rows: list[Coefficients], asked: dict[str,
         raise TimingFailed("toppra", asked, "the path's coefficients are not finite: a singular pose on it")
     # toppra asks for a path, but all that its algorithm reads from it is the interval [0, 1].
     unit = SimplePath(np.array([0.0, 1.0]), np.array([[0.0], [1.0]]))
-    constraints = [SpeedBound(bound), *(SymmetricRows(r) for r in rows)]
+    # In a unit of time in which u and x are about 1: the solver's tolerances are absolute.
+    unit_squared = min([float(bound.max()), *(1.0 / float(np.abs(a).max()) for a, _, _ in rows)])
+    scaled = [(a * unit_squared, b * unit_squared, c) for a, b, c in rows]
+    constraints = [SpeedBound(bound / unit_squared), *(SymmetricRows(r) for r in scaled)]
     problem = TOPPRA(constraints, unit, gridpoints=grid, solver_wrapper="seidel")
     _, speed, _ = problem.compute_parameterization(0.0, 0.0)
     if speed is None or not np.isfinite(speed).all():
         raise TimingFailed("toppra", asked, f"no solution ({problem.problem_data.return_code.name})")
-    return np.asarray(speed)
+    return np.asarray(speed) * math.sqrt(unit_squared)

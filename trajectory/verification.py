@@ -18,7 +18,7 @@ from kinematics import Mechanism
 from kinematics.drives import from_actuators
 from trajectory.limits import Limits
 from trajectory.motion import Motion, motion_of
-from trajectory.path import Array, require_schoenflies
+from trajectory.path import Array, places
 from trajectory.timed import TimedMotion
 
 LEAST_PARTS = 10  # of each interval of the law
@@ -114,15 +114,14 @@ def verify(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float)
     """Measure a timed motion against its limits.
 
     Args:
-        robot: any mechanism whose pose is [x, y, z, theta].
+        robot: any mechanism with the motion's kind of pose.
         timed: the motion, from rest to rest.
         limits: of joints and tool. Where the acceleration jumps, a jerk limit fails with an infinite peak.
         payload: mass at the tool [kg].
 
     Raises:
-        InvalidValue: another kind of pose.
+        InvalidShape: another kind of pose.
     """
-    require_schoenflies(robot)
     times, tool = timed.within(sampling(timed))
     motion = motion_of(robot, tool, payload)
     peaks, notes = _peaks(robot, times, motion, limits)
@@ -158,7 +157,7 @@ def _peaks(robot: Mechanism, times: Array, motion: Motion, limits: Limits) -> tu
         return Peak(quantity, names[joint], float(times[row, part]), value, bound, ratio)
 
     def of_tool(quantity: str, values: Array, limit: float | None) -> Peak:
-        size = np.linalg.norm(values[..., :3], axis=-1)
+        size = np.linalg.norm(values[..., : places(robot.pose_names)], axis=-1)
         where = np.unravel_index(int(size.argmax()), size.shape)
         ratio = None if limit is None else float(size[where]) / limit
         return Peak(quantity, None, float(times[where]), float(size[where]), limit, ratio)

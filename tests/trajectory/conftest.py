@@ -18,6 +18,7 @@ class Straight:
     start: tuple[float, float, float, float] = (0.0, 0.0, -0.8, 0.0)
     direction: tuple[float, float, float, float] = (0.0, 0.0, 1.0, 0.0)
     length: float = 0.1
+    pose_names: tuple[str, ...] = ("x", "y", "z", "theta")
 
     def evaluate(self, s: np.ndarray, order: int = 3) -> tuple[np.ndarray, ...]:
         s = np.asarray(s, dtype=float)[..., None]
@@ -39,6 +40,10 @@ class Joined:
     @property
     def length(self) -> float:
         return self.first.length + self.second.length
+
+    @property
+    def pose_names(self) -> tuple[str, ...]:
+        return self.first.pose_names
 
     def evaluate(self, s: np.ndarray, order: int = 3) -> tuple[np.ndarray, ...]:
         in_first = (s <= self.first.length)[..., None]

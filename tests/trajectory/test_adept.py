@@ -49,7 +49,8 @@ def test_positions_agree_with_quadrature_in_30_digits(fraction: float) -> None:
 
 def test_arc_length_is_the_integral_of_the_speed_of_the_positions() -> None:
     share = quad(lambda u: math.sin(math.pi / 2 * quintic(u)), 0.0, 1.0, epsabs=1e-15)[0]
-    assert HERE.corner_length == pytest.approx(HERE.blend / share, rel=1e-15)
+    corner = HERE.knots[2] - HERE.knots[1]
+    assert corner == pytest.approx(HERE.blend / share, rel=1e-15)
     s = np.linspace(0.0, HERE.length, 20001)
     chords = np.linalg.norm(np.diff(HERE.evaluate(s, 0)[0][:, :3], axis=0), axis=-1).sum()
     assert chords == pytest.approx(HERE.length, rel=1e-7)
@@ -81,7 +82,8 @@ def test_each_derivative_is_the_finite_difference_of_the_one_below(order: int) -
 
 def test_curvature_and_its_slope_are_continuous_across_the_knots() -> None:
     """G3: the third derivative of the position changes across a knot by no more than its slope allows."""
-    steepest = math.pi / 2 * 60 / HERE.corner_length**3 + 2e5 * HERE.turn  # of S5''' and of the slower turn
+    corner = HERE.knots[2] - HERE.knots[1]
+    steepest = math.pi / 2 * 60 / corner**3 + 2e5 * HERE.turn  # of S5''' and of the slower turn
     for h in (1e-6, 1e-7):
         for knot in HERE.knots[1:-1]:
             below, above = HERE.evaluate(np.array([knot - h, knot + h]), 3)[3]
@@ -140,6 +142,63 @@ def test_any_valid_cycle_ends_at_the_place_and_keeps_within_its_height(
     assert 2 * lift + span - 4 * path.blend < path.length <= 2 * lift + span
 
 
+@pytest.mark.parametrize(("size", "span"), [("25/305/25", 0.305), ("25/300/25", 0.3), ("25/700/25", 0.7)])
+def test_a_standard_size_is_as_long_as_its_legs_and_corners(size: str, span: float) -> None:
+    """Each corner replaces two blends b by its arc b / I, I the mean of the sine of the tangent's angle."""
+    path = AdeptCycle.of_size(size, blend=0.02)
+    with mpmath.workdps(30):
+        mean = float(mpmath.quad(lambda u: mpmath.sin(mpmath.pi / 2 * quintic(u)), [0, 1]))
+    assert path.length == pytest.approx(0.05 + span - 4 * 0.02 + 2 * 0.02 / mean, rel=1e-15)
+
+
+def test_another_size_is_refused() -> None:
+    with pytest.raises(InvalidValue, match="25/305/25"):
+        AdeptCycle.of_size("30/305/30")
+
+
+def test_pick_and_place_may_lie_at_any_heights_each_with_its_own_lift() -> None:
+    pick, place = (0.05, -0.1, -0.8), (-0.15, 0.1, -0.76)
+    path = AdeptCycle.between(pick, place, lift=0.06, place_lift=0.03, blend=0.02, turn=1.0)
+    assert path.place == pytest.approx(place, abs=1e-15)
+    s = np.linspace(0.0, path.length, 4001)
+    pose, first = path.evaluate(s, 1)
+    assert (*pose[0, :3], *pose[-1, :3]) == pytest.approx((*pick, *place), abs=1e-15)
+    assert np.abs(np.linalg.norm(first[:, :3], axis=1) - 1).max() < 1e-15
+    straight_up, straight_down = s <= path.knots[1], s >= path.knots[4]
+    assert pose[straight_up, 2].max() == pytest.approx(pick[2] + 0.06 - 0.02, abs=1e-4)
+    assert pose[straight_down, 2].max() == pytest.approx(place[2] + 0.03 - 0.02, abs=1e-4)
+    for legs in (straight_up, straight_down):
+        assert np.ptp(pose[legs, :2], axis=0).max() == 0.0
+    assert pose[:, 2].max() < max(pick[2] + 0.06, place[2] + 0.03)
+
+
+def test_tilt_and_turn_share_the_smooth_change_along_the_path() -> None:
+    names = ("x", "y", "z", "roll", "pitch", "yaw")
+    path = AdeptCycle(turn=0.3, start_angle=0.1, tilt=(0.2, -0.1), pose_names=names)
+    share = np.linspace(0.0, 1.0, 101)
+    (pose,) = path.evaluate(share * path.length, 0)
+    smooth = 35 * share**4 - 84 * share**5 + 70 * share**6 - 20 * share**7
+    assert np.abs(pose[:, 3:] - (np.array([0, 0, 0.1]) + smooth[:, None] * [0.2, -0.1, 0.3])).max() < 1e-14
+
+
+@pytest.mark.parametrize(
+    ("fields", "wrong"),
+    [
+        ({"pose_names": ("x", "y", "theta")}, "pose_names"),
+        ({"pose_names": ("x", "y", "z")}, "turn"),
+        ({"tilt": (0.1, 0.0)}, "tilt"),
+        ({"tilt": (0.1,)}, "tilt"),
+        ({"place_lift": 0.02}, "blend"),
+        ({"place_lift": -0.02}, "place_lift"),
+        ({"rise": math.nan}, "rise"),
+    ],
+)
+def test_what_does_not_go_with_the_pose_or_the_corners_is_named(fields: dict, wrong: str) -> None:
+    with pytest.raises(InvalidValue) as caught:
+        AdeptCycle(**fields)
+    assert wrong in caught.value.what
+
+
 @pytest.mark.parametrize(
     ("field", "value"),
     [
@@ -168,6 +227,6 @@ def test_an_arc_length_outside_the_path_is_refused(s: float) -> None:
         HERE.evaluate(np.array([0.1, s]))
 
 
-def test_an_order_beyond_the_third_is_refused() -> None:
+def test_an_order_beyond_the_fourth_is_refused() -> None:
     with pytest.raises(InvalidValue, match="order"):
-        HERE.evaluate(np.array(0.1), 4)
+        HERE.evaluate(np.array(0.1), 5)

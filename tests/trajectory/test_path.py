@@ -17,6 +17,7 @@ class Rescaled:
 
     path: Path
     factor: float
+    pose_names: tuple[str, ...] = ("x", "y", "z", "theta")
 
     @property
     def length(self) -> float:

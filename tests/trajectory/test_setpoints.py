@@ -91,7 +91,7 @@ def test_a_lighter_way_back_is_faster(robot: Heli4, path: AdeptCycle, limits: Li
 
 
 def test_a_stretched_cycle_is_verified_again(cycle: Cycle) -> None:
-    tighter = Cycle(cycle.robot, replace(cycle.limits, torque=120.0), cycle.pieces)
+    tighter = replace(cycle, limits=replace(cycle.limits, torque=120.0))
     with pytest.raises(LimitsExceeded):
         cycle_setpoints(tighter, PERIOD, UNITS)
 

@@ -144,7 +144,7 @@ def test_another_kind_of_pose_is_refused(path: AdeptCycle, limits: Limits) -> No
     class Turned(Heli4):
         pose_names = ("x", "y", "z", "phi")
 
-    with pytest.raises(InvalidValue, match="pose of Turned"):
+    with pytest.raises(InvalidValue, match="path for Turned"):
         time_optimal(Turned(), path, limits, 1.0)
 
 
