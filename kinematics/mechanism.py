@@ -8,7 +8,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import require_masses
+from kinematics.bodies import InertiaRecord
 from kinematics.definition import Definition
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.geometry import GeometryRecord
@@ -35,11 +35,13 @@ class Mechanism(Definition):
     Every public method takes poses (..., n) or joints (..., m) with any leading shape.
     """
 
-    def __init__(self, geometry: GeometryRecord | None = None, inertia: Any = None) -> None:
+    def __init__(self, geometry: GeometryRecord | None = None, inertia: InertiaRecord | None = None) -> None:
         self.geometry = geometry if geometry is not None else self.Geometry()
         if not isinstance(self.geometry, self.Geometry):
             raise InvalidValue(f"{type(self).__name__} geometry", geometry, f"a {self.Geometry.__name__}")
-        self.inertia = require_masses(inertia if inertia is not None else self.Inertia())
+        self.inertia = inertia if inertia is not None else self.Inertia()
+        if not isinstance(self.inertia, self.Inertia):
+            raise InvalidValue(f"{type(self).__name__} inertia", inertia, f"a {self.Inertia.__name__}")
         self._programs: dict[object, Program] = {}
 
     def __repr__(self) -> str:
