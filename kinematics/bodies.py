@@ -11,6 +11,8 @@ import numpy as np
 from kinematics.drive_train import DriveTrain
 from kinematics.errors import InvalidValue
 
+UNIFORM = 2 / 3  # the `rod_middle` of a thin uniform rod: with 1/6 at each end, its mass, centre and inertia
+
 
 @dataclass(frozen=True)
 class InertiaRecord:
@@ -18,7 +20,7 @@ class InertiaRecord:
 
     Attributes:
         rod_middle: share of each rod's mass that sits at its middle, the rest half at each end. 0 splits it between
-            the ends, as is usual; 2/3 is a thin uniform rod, exactly; 1 - 4 I / (m l^2) any other of inertia I about
+            the ends, as is usual; `UNIFORM` is a thin uniform rod, exactly; 1 - 4 I / (m l^2) any other of inertia I about
             its middle.
         drive_train: gear, motor and friction of the actuators.
 
@@ -55,7 +57,7 @@ class Rotor(NamedTuple):
     Its axis keeps its direction. A mass that only slides is one too: its mass [kg] and how far it has slid [m].
     """
 
-    inertia: float
+    inertia: float | ca.SX
     angle: ca.SX
 
 
@@ -78,10 +80,17 @@ class Bodies:
     rods: list[Rod] = field(default_factory=list)
 
     def all_particles(self) -> list[Particle]:
-        """The particles, and each rod as two or three."""
-        result, end = list(self.particles), (1 - self.rod_middle) / 2
-        for rod in self.rods:
-            result += [Particle(rod.links[k], end * rod.mass, (rod.start, rod.end)[k]) for k in range(2)]
-            if self.rod_middle:
-                result.append(Particle("rod", self.rod_middle * rod.mass, (rod.start + rod.end) / 2))
+        """The particles, and each rod as two or three: its ends on its links, its middle on a link of its own."""
+        result = list(self.particles)
+        for k, rod in enumerate(self.rods):
+            near, middle, far = self.rod_particles(k)
+            result += [near._replace(link=rod.links[0]), far._replace(link=rod.links[1])]
+            result += [middle] if self.rod_middle else []
         return result
+
+    def rod_particles(self, k: int) -> list[Particle]:
+        """Start, middle and end of a rod, as particles of the link `rod`, counted from 1."""
+        rod, link, end = self.rods[k], f"rod {k + 1}", (1 - self.rod_middle) / 2
+        points = (rod.start, (rod.start + rod.end) / 2, rod.end)
+        shares = (end, self.rod_middle, end)
+        return [Particle(link, share * rod.mass, point) for share, point in zip(shares, points, strict=True)]

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
+from kinematics import Mechanism
+from kinematics.mjcf import mjcf
+from studies import setup
 from studies.optimum import FILE, optimum_of
 from studies.pipeline import Outcome, Timing
 from studies.report import html_report, pictures_of
+from studies.schema import Study
 from trajectory import write_files
 from trajectory.setpoint_file import setpoints_text
 
@@ -44,6 +51,28 @@ def write_setpoints(timing: Timing, folder: Path) -> list[Path]:
         CannotWrite: the folder cannot be written to.
     """
     return write_files(folder, _setpoints(timing))
+
+
+def write_model(robot: Mechanism, study: Study, rod_middle: float, file: Path) -> Path:
+    """The robot as an MJCF file that starts where the study's cycle does, with its payload; else at home, empty.
+
+    Args:
+        robot: whose geometry and masses are written.
+        study: asks for the cycle.
+        rod_middle: share of each rod's mass at its middle, in place of the robot's.
+        file: what to write.
+
+    Raises:
+        InvalidValue: the mechanism has no such model.
+        UnreachablePose: a limb cannot reach the start.
+        CannotWrite: the file cannot be written.
+    """
+    pose, payload = np.array(robot.home), 0.0
+    if study.trajectory is not None:
+        cycle = study.trajectory.cycle
+        (pose,), payload = setup.cycle_of(cycle).evaluate(np.array(0.0), 0), cycle.payload
+    robot = type(robot)(robot.geometry, replace(robot.inertia, rod_middle=rod_middle))
+    return write_files(file.parent, {file.name: mjcf(robot, pose, payload)})[0]
 
 
 def _setpoints(timing: Timing) -> dict[str, str]:
