@@ -20,8 +20,8 @@ class InertiaRecord:
 
     Attributes:
         rod_middle: share of each rod's mass that sits at its middle, the rest half at each end. 0 splits it between
-            the ends, as is usual; `UNIFORM` is a thin uniform rod, exactly; 1 - 4 I / (m l^2) any other of inertia I about
-            its middle.
+            the ends, as is usual; `UNIFORM` is a thin uniform rod, exactly; 1 - 4 I / (m l^2) is any other symmetric
+            one, of inertia I about its middle.
         drive_train: gear, motor and friction of the actuators.
 
     Raises:

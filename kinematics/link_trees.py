@@ -65,7 +65,7 @@ def _redundant(model: Model, _: Reference) -> Tree:
 
 def _peppermill(model: Model, _: Reference) -> Tree:
     pose, joints, g = model.pose, model.joints, model.g
-    _, carriages, _, _ = Peppermill.points(pose, joints, g)
+    carriages = Peppermill.points(pose, joints, g)[1]
     links, couplings, planes = [], [], []
     for i in range(2):
         slide = TreeJoint(f"d{i + 1}", "slide", AXES[i], ORIGIN, joints[i])

@@ -54,7 +54,7 @@ def mjcf(robot: Mechanism, pose: Array, payload: float = 0.0) -> str:
 
 def _links(world: Xml.Element, cut: OpenTree) -> dict[str, Xml.Element]:
     """Bodies and joints by their names; no name is both."""
-    elements = {}
+    elements: dict[str, Xml.Element] = {}
     for link in cut.tree.links:
         body = Xml.SubElement(elements[link.parent] if link.parent else world, "body", name=link.name)
         elements[link.name] = body
@@ -92,17 +92,17 @@ def _close(cut: OpenTree, elements: dict[str, Xml.Element], tendons: Xml.Element
     """Couplings of joints, shared points, and rods that are no bodies."""
     for follower, leader, ratio in cut.tree.couplings:
         line = f"0 {_text(cut.reference(ratio))} 0 0 0"
-        Xml.SubElement(equality, "joint", joint1=follower, joint2=leader, polycoef=line, **_STIFF)
+        Xml.SubElement(equality, "joint", joint1=follower, joint2=leader, polycoef=line).attrib.update(_STIFF)
     for (first, second), point in cut.tree.connections:
         anchor = _text(cut.reference(point))
-        Xml.SubElement(equality, "connect", body1=first, body2=second, anchor=anchor, **_STIFF)
+        Xml.SubElement(equality, "connect", body1=first, body2=second, anchor=anchor).attrib.update(_STIFF)
     for k, rod in enumerate([] if cut.rods_are_bodies else cut.bodies.rods):
         tendon = Xml.SubElement(tendons, "spatial", name=f"rod {k + 1}")
         for link, point, side in zip(rod.links, (rod.start, rod.end), "ab", strict=True):
             site = f"rod {k + 1}{side}"
             Xml.SubElement(elements[link], "site", name=site, pos=_text(cut.reference(point)))
             Xml.SubElement(tendon, "site", site=site)
-        Xml.SubElement(equality, "tendon", tendon1=f"rod {k + 1}", **_STIFF)
+        Xml.SubElement(equality, "tendon", tendon1=f"rod {k + 1}").attrib.update(_STIFF)
 
 
 def _drive(
@@ -135,6 +135,7 @@ def _drive(
         for attribute, value in (("damping", viscous[k] * rate**2), ("frictionloss", coulomb[k] * abs(rate))):
             if value:
                 element.set(attribute, _text(value))
+                element.set("solreffriction", _STIFF["solref"])  # else strong damping turns its sign
         kind = "joint" if element.tag == "joint" else "tendon"
         on = {kind: element.get("name", "")}
         Xml.SubElement(actuators, "motor", on, name=robot.actuator_names[k], gear=_text(gear[k] * rate))

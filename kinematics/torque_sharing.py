@@ -1,10 +1,10 @@
 """How more actuators than freedoms share a load: the share whose largest torque over its limit is least.
 
-All torques that do the same work are tau + N y, with N a basis of the null space of J^T, k = m - n columns. The least of
-max |tau_i + N_i y| / limit_i is a small linear programme in (y, t), t the peak. Its optimum is a vertex, where k + 1 of
-the ratios are t in size: so each choice of k + 1 actuators and of their signs gives one linear system, and the best of
-all their solutions, measured over all actuators, is the optimum exactly. Where several shares have the least peak,
-one of them is given.
+All torques that do the same work are tau + N y, with N a basis of the null space of J^T, k = m - n columns. The least
+of max |tau_i + N_i y| / limit_i is a small linear programme in (y, t), t the peak. Its optimum is a vertex, where k + 1
+of the ratios are t in size: so each choice of k + 1 actuators and of their signs gives one linear system, and the best
+of all their solutions, measured over all actuators, is the optimum exactly. Where several shares have the least peak,
+one of them is given, and it may change between one pose and the next.
 """
 
 from __future__ import annotations
