@@ -96,13 +96,13 @@ def test_other_impossible_inertias_are_named():
     with pytest.raises(InvalidValue, match="DriveTrain gear_ratio: found 0"):
         DriveTrain(gear_ratio=0.0)
     three = with_drives(Heli4, coulomb=(1.0, 2.0, 3.0))
-    with pytest.raises(InvalidValue, match="DriveTrain coulomb: .* one number or 4, one an actuator"):
+    with pytest.raises(InvalidValue, match=r"DriveTrain coulomb: .* one number or 4, one an actuator"):
         inverse_dynamics(three, 0.0, Heli4.home, REST, REST)
-    with pytest.raises(InvalidValue, match="Heli4Inertia rod_middle: found 1.1"):
+    with pytest.raises(InvalidValue, match=r"Heli4Inertia rod_middle: found 1.1"):
         Heli4Inertia(rod_middle=1.1)
     with pytest.raises(InvalidValue, match="Heli4Inertia arm_mass: found -1"):
         Heli4Inertia(arm_mass=-1)
     with pytest.raises(InvalidValue, match="Heli4Inertia drive_train: found None"):
         Heli4Inertia(drive_train=None)
-    with pytest.raises(InvalidValue, match="Heli4 inertia: .*expected a Heli4Inertia"):
+    with pytest.raises(InvalidValue, match=r"Heli4 inertia: .*expected a Heli4Inertia"):
         Heli4(inertia=GoughStewart.Inertia())
