@@ -9,6 +9,7 @@ import numpy as np
 from kinematics.errors import InvalidValue
 
 PerActuator = float | tuple[float, ...]
+REST = 1e-9  # [rad/s or m/s], above what rounding leaves of a speed of 0
 
 
 @dataclass(frozen=True)
@@ -17,7 +18,7 @@ class DriveTrain:
 
     Torques, speeds and limits everywhere are the actuator's, the gear's output: a motor turns `gear_ratio` times as
     fast and bears the torque over `gear_ratio`. Friction is the actuator's too: coulomb sign(speed) + viscous speed,
-    where the sign of exactly 0 is 0, so that a drive at rest bears none.
+    and a drive at rest, slower than `REST`, bears no Coulomb friction.
 
     Attributes:
         gear_ratio: motor [rad] per actuator [rad or m].
@@ -43,6 +44,11 @@ class DriveTrain:
             object.__setattr__(self, f.name, tuple(numbers.tolist()) if numbers.ndim else float(numbers))
         if np.any(np.asarray(self.gear_ratio) == 0.0):
             raise InvalidValue("DriveTrain gear_ratio", self.gear_ratio, "> 0")
+
+    def friction(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(..., m) actuator speeds [rad/s or m/s] -> Coulomb and viscous friction, (..., m) each [N m or N]."""
+        coulomb, viscous = (self.of_actuators(name, speed.shape[-1]) for name in ("coulomb", "viscous"))
+        return coulomb * np.sign(speed) * (np.abs(speed) > REST), viscous * speed
 
     def of_actuators(self, name: str, count: int) -> np.ndarray:
         """(count,) one field.

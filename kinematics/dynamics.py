@@ -17,6 +17,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.bodies import Bodies, Rotor
+from kinematics.drive_train import REST
 from kinematics.errors import InvalidValue
 from kinematics.interpreter import evaluate
 from kinematics.linear import adjugate
@@ -80,7 +81,7 @@ def _friction(robot: Mechanism, speed: ca.SX) -> ca.SX:
     coulomb, viscous = (
         ca.DM(robot.inertia.drive_train.of_actuators(name, speed.shape[0])) for name in ("coulomb", "viscous")
     )
-    return coulomb * ca.sign(speed) + viscous * speed
+    return coulomb * ca.sign(speed) * (ca.fabs(speed) > REST) + viscous * speed
 
 
 def moving_bodies(robot: Mechanism, model: Model, payload: float) -> Bodies:

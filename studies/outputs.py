@@ -14,7 +14,7 @@ from studies.optimum import FILE, optimum_of
 from studies.pipeline import Outcome, Timing
 from studies.report import html_report, pictures_of
 from studies.schema import Study
-from trajectory import write_files
+from trajectory import CannotWrite, write_files
 from trajectory.setpoint_file import setpoints_text
 
 
@@ -71,6 +71,8 @@ def write_model(robot: Mechanism, study: Study, rod_middle: float, file: Path) -
     if study.trajectory is not None:
         cycle = study.trajectory.cycle
         (pose,), payload = setup.cycle_of(cycle).evaluate(np.array(0.0), 0), cycle.payload
+    if file.is_dir():
+        raise CannotWrite(file, "it is a folder")
     robot = type(robot)(robot.geometry, replace(robot.inertia, rod_middle=rod_middle))
     return write_files(file.parent, {file.name: mjcf(robot, pose, payload)})[0]
 

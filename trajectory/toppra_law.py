@@ -9,7 +9,7 @@ Along a path, with u = s'' and x = s'^2, every limit that is kept here is linear
     joint speed          |q'| sqrt(x),  tool speed  |p'| sqrt(x)
 
 with a dash for the derivative by the path parameter and f the Coulomb friction, whose sign along the path is that of
-q': the odd part of tau in the speed. Viscous friction is linear in sqrt(x), so this law refuses it. The coefficients
+q'. Viscous friction is linear in sqrt(x), so this law refuses it. The coefficients
 are exact at the gridpoints, where the limits are kept on both sides (toppra's interpolation scheme); in between they
 are kept to the order of the grid, which `verify` measures. The law has bang-bang s'': it keeps no jerk limit and
 refuses one.
@@ -99,12 +99,21 @@ def _path_limits(
     if torque is not None:
         weight = inverse_dynamics(robot, payload, pose, none, none)
         by_u = inverse_dynamics(robot, payload, pose, none, first) - weight
-        there, back = (inverse_dynamics(robot, payload, pose, way * first, second) for way in (1.0, -1.0))
-        friction = (there - back) / 2
-        rows.append((by_u / torque, (there - friction - weight) / torque, (weight + friction) / torque))
+        ways = [inverse_dynamics(robot, payload, pose, way * first, second) for way in (1.0, -1.0)]
+        by_x = sum(ways) / 2 - weight  # friction changes its sign with the way
+        rows += [(by_u / torque, by_x / torque, (weight + f) / torque) for f in _coulomb(robot, joints.first)]
     if limits.tool_acceleration is not None:
         rows.append(_tool_rows(first[:, :3], second[:, :3], limits.tool_acceleration))
     return highest, rows
+
+
+def _coulomb(robot: Mechanism, rates: Array) -> list[Array]:
+    """(N + 1, m) friction before and after each gridpoint: it jumps where a joint turns back, and to 0 at rest."""
+    train = robot.inertia.drive_train
+    if not np.any(train.coulomb):
+        return [np.zeros_like(rates)]
+    padded = np.pad(rates, ((1, 1), (0, 0)))
+    return [train.friction(padded[:-2])[0], train.friction(padded[2:])[0]]
 
 
 def _tool_rows(first: Array, second: Array, cap: float) -> Coefficients:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import casadi as ca
 import mujoco
 import numpy as np
 
@@ -76,3 +77,10 @@ class OpenTree:
         inertia = np.zeros((self.model.nv, self.model.nv))
         mujoco.mj_fullM(self.model, self.data, inertia)
         return dict(zip(self.names, inertia @ self.data.qacc + self.data.qfrc_bias, strict=True))
+
+    def wrench(self, pose, velocity, acceleration):
+        """(n,) `forces` on the twist, by virtual work."""
+        n, forces = len(pose), self.forces(pose, velocity, acceleration)
+        rates = tree_motion(self.robot, self.reference, np.tile(pose, (n, 1)), np.eye(n), np.zeros((n, n)))
+        by_pose = sum(rates[name][1] * force for name, force in forces.items())
+        return np.array(ca.evalf(self.robot.pose_rate_map(ca.SX(pose)))).T @ by_pose

@@ -1,6 +1,5 @@
 """The MJCF export: MuJoCo, on the same bodies, needs the same torques, and follows them with its loops closed."""
 
-import casadi as ca
 import mujoco
 import numpy as np
 import pytest
@@ -9,7 +8,6 @@ from kinematics import Delta, DriveTrain, GoughStewart, Heli4, InvalidValue, Pep
 from kinematics.drives import to_actuators
 from kinematics.dynamics import inverse_dynamics
 from kinematics.mjcf import mjcf
-from kinematics.open_tree import tree_motion
 from tests.kinematics.mujoco_model import MAIN, OpenTree, cycle, loaded, with_uniform_rods
 
 PAYLOAD = 1.3
@@ -46,17 +44,13 @@ def test_loops_close_in_mujoco_at_every_pose(kind, uniform):
 def test_open_trees_inertia_and_bias_projected_by_our_jacobians_give_our_torques(kind, uniform):
     """Virtual work of MuJoCo's forces on all joints of the tree against that of our torques."""
     robot = robot_of(kind, uniform, gear_ratio=5.0, motor_inertia=1e-3)
-    n = len(robot.pose_names)
-    poses, velocities, accelerations = motions(robot, 30, seed=2)
-    tree = OpenTree(robot, poses[0], PAYLOAD)
-    torques = inverse_dynamics(robot, PAYLOAD, poses, velocities, accelerations)
-    for pose, velocity, acceleration, torque in zip(poses, velocities, accelerations, torques, strict=True):
-        forces = tree.forces(pose, velocity, acceleration)
-        rates = tree_motion(robot, poses[0], np.tile(pose, (n, 1)), np.eye(n), np.zeros((n, n)))
-        by_pose = sum(rates[name][1] * force for name, force in forces.items())
-        twist_from_rates = np.linalg.inv(np.array(ca.evalf(kind.pose_rate_map(ca.SX(pose)))))
-        found = twist_from_rates.T @ robot.actuator_jacobian(pose).T @ torque
-        assert np.abs(found - by_pose).max() < 1e-6 * np.abs(by_pose).max()
+    motion = motions(robot, 30, seed=2)
+    tree = OpenTree(robot, motion[0][0], PAYLOAD)
+    torques = inverse_dynamics(robot, PAYLOAD, *motion)
+    for pose, velocity, acceleration, torque in zip(*motion, torques, strict=True):
+        wrench = tree.wrench(pose, velocity, acceleration)
+        found = robot.actuator_jacobian(pose).T @ torque
+        assert np.abs(found - wrench).max() < 1e-6 * np.abs(wrench).max()
 
 
 @pytest.mark.parametrize("kind", [Heli4, Redundant3T1R], ids=lambda kind: kind.__name__)
