@@ -53,7 +53,7 @@ def mjcf(robot: Mechanism, pose: Array, payload: float = 0.0) -> str:
 
 
 def _links(world: Xml.Element, cut: OpenTree) -> dict[str, Xml.Element]:
-    """Bodies and joints by their names; no name is both."""
+    """Bodies by their names, and joints by `joint` and theirs."""
     elements: dict[str, Xml.Element] = {}
     for link in cut.tree.links:
         body = Xml.SubElement(elements[link.parent] if link.parent else world, "body", name=link.name)

@@ -87,7 +87,7 @@ def _torque_factor(robot: Mechanism, timed: TimedMotion, limits: Limits, payload
     constant = inverse_dynamics(robot, payload, motion.tool.pose, rest, rest) + coulomb
     static = float((np.abs(constant) / limit).max())
     if not static < 1.0:
-        raise LimitsExceeded({"torque however slow": static}, 1.0)
+        raise LimitsExceeded({"torque at rest": static}, 1.0)
     over = np.abs(motion.torque) > limit
     if not over.any():
         return 1.0

@@ -9,10 +9,9 @@ Along a path, with u = s'' and x = s'^2, every limit that is kept here is linear
     joint speed          |q'| sqrt(x),  tool speed  |p'| sqrt(x)
 
 with a dash for the derivative by the path parameter and f the Coulomb friction, whose sign along the path is that of
-q'. Viscous friction is linear in sqrt(x), so this law refuses it. The coefficients
-are exact at the gridpoints, where the limits are kept on both sides (toppra's interpolation scheme); in between they
-are kept to the order of the grid, which `verify` measures. The law has bang-bang s'': it keeps no jerk limit and
-refuses one.
+q'; viscous friction is linear in sqrt(x), so this law refuses it. The coefficients are exact at the gridpoints, where
+the limits are kept on both sides (toppra's interpolation scheme); in between they are kept to the order of the grid,
+which `verify` measures. The law has bang-bang s'': it keeps no jerk limit and refuses one.
 """
 
 from __future__ import annotations
