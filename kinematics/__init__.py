@@ -1,7 +1,9 @@
 """Mechanisms as loop closures, and all that follows from them."""
 
 from kinematics.architectures import ARCHITECTURES, Architecture, loop_mobility, mobility_of_identical_chains
+from kinematics.bodies import InertiaRecord
 from kinematics.delta import Delta
+from kinematics.drive_train import DriveTrain
 from kinematics.dynamics import inverse_dynamics
 from kinematics.errors import InvalidGeometry, InvalidShape, InvalidValue, LinkwrightError, UnreachablePose
 from kinematics.gough_stewart import GoughStewart
@@ -30,10 +32,12 @@ __all__ = [
     "MECHANISMS",
     "Architecture",
     "Delta",
+    "DriveTrain",
     "FviBounds",
     "GoughStewart",
     "Heli4",
     "Hexa",
+    "InertiaRecord",
     "InvalidGeometry",
     "InvalidShape",
     "InvalidValue",

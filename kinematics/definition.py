@@ -12,7 +12,7 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import Bodies
+from kinematics.bodies import Bodies, InertiaRecord
 from kinematics.geometry import GeometryRecord
 from kinematics.indices import FviBounds
 
@@ -23,7 +23,7 @@ class Definition(ABC):
     """The hooks of a mechanism; `g` holds the geometry's fields by name, as numbers or symbols."""
 
     Geometry: ClassVar[type[GeometryRecord]]
-    Inertia: ClassVar[type]  # a frozen dataclass of masses, with defaults
+    Inertia: ClassVar[type[InertiaRecord]]
     pose_names: ClassVar[tuple[str, ...]]
     joint_names: ClassVar[tuple[str, ...]]
     joint_units: ClassVar[tuple[str, ...]]  # rad or m
@@ -58,7 +58,7 @@ class Definition(ABC):
 
     @abstractmethod
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
-        """The masses that the joints and the pose move; `payload` [kg] sits at the tool."""
+        """The masses that move; `payload` [kg] sits at the tool."""
 
     @staticmethod
     @abstractmethod

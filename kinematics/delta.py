@@ -10,7 +10,7 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import Bodies
+from kinematics.bodies import Bodies, Particle
 from kinematics.errors import InvalidShape
 from kinematics.geometry import GeometryRecord, angle, length
 from kinematics.indices import FviBounds
@@ -89,9 +89,9 @@ class Delta(RotaryLimbs):
         return ca.repmat(g.arm_length * g.rod_length, 3, 1), g.rod_length**3
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
-        """Arms with half of the rods; plate and payload with the other half."""
-        bodies = self.arm_bodies(joints, g, self.inertia.rod_mass / 2)
-        bodies.of_pose.particles.append((self.inertia.plate_mass + 1.5 * self.inertia.rod_mass + payload, pose))
+        """Arms, rods, plate and payload."""
+        bodies = self.limb_bodies(pose, joints, g, self.inertia.rod_mass, ["plate"] * 3)
+        bodies.particles.append(Particle("plate", self.inertia.plate_mass + payload, pose))
         return bodies
 
     @classmethod

@@ -1,69 +1,114 @@
 """Inverse dynamics by d'Alembert's principle on the mechanism's own points.
 
-The rigid-body model of a mechanism is a list of particles and rotors, each moved either by the joints or by the pose;
-a rod's mass is split between its two ends, so that every mass belongs to one side. With Q_q and Q_x the inertia and
-weight forces on both sides, virtual work gives J_m^T (tau - Q_q) = Q_x. With more joints than freedoms many tau do:
-each drive moves its own side, and what the platform needs is shared with the least norm,
-tau = Q_q + J_m (J_m^T J_m)^-1 Q_x. Actuators = C joints then bear C^-T tau.
+The rigid-body model of a mechanism is a list of particles, rotors and rods (`bodies`). With Q_q and Q_x the inertia and
+weight forces on joints and pose, virtual work gives J_m^T (tau - Q_q) = Q_x. Actuators = C joints then bear C^-T tau,
+and their own friction.
+
+With more joints than freedoms many tau do. `least_norm`: each drive moves its own side, and what the platform needs is
+shared with the least norm, tau = Q_q + J_m (J_m^T J_m)^-1 Q_x. `least_peak`: see `torque_sharing`.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Literal, get_args
 
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import BodySet
+from kinematics.bodies import Bodies, Rotor
+from kinematics.drive_train import REST
 from kinematics.errors import InvalidValue
 from kinematics.interpreter import evaluate
 from kinematics.linear import adjugate
 from kinematics.mechanism import Array, Build, Mechanism, checked
 from kinematics.model import Model
 from kinematics.motion import derivatives_along
+from kinematics.torque_sharing import least_peak
 
 GRAVITY = 9.80665  # m/s^2, along -e_z
+Sharing = Literal["least_norm", "least_peak"]
 
 
-def inverse_dynamics(robot: Mechanism, payload: float, pose: Array, velocity: Array, acceleration: Array) -> Array:
-    """Actuator torques (or forces) that make the platform follow a motion.
+def inverse_dynamics(
+    robot: Mechanism,
+    payload: float,
+    pose: Array,
+    velocity: Array,
+    acceleration: Array,
+    sharing: Sharing = "least_norm",
+    torque_limits: Array | None = None,
+) -> Array:
+    """Actuator torques (or forces) that make the platform follow a motion, their friction included.
 
     Args:
-        robot: its `bodies(...)` states the masses.
+        robot: its `bodies(...)` states the masses, its inertia's `drive_train` gear and friction.
         payload: mass at the tool [kg].
         pose, velocity, acceleration: (..., n) the pose and its time derivatives.
+        sharing: how more actuators than freedoms share the work.
+        torque_limits: (m,) what `least_peak` weighs the torques by; all alike by default.
 
     Returns:
-        (..., m) torques [N m] or forces [N] at the actuators; NaN out of reach.
-    """
+        (..., m) torques [N m] or forces [N] at the actuators, the gears' output; NaN out of reach.
 
+    Raises:
+        InvalidValue: a payload, a sharing or limits that cannot be.
+    """
+    given = [checked(v, name, robot.pose_names) for name, v in _named(pose, velocity, acceleration)]
+    if sharing not in get_args(Sharing):
+        raise InvalidValue("sharing", sharing, f"one of {', '.join(get_args(Sharing))}")
+    program = robot.program(("inverse_dynamics", payload), lambda model: _build(robot, model, payload))
+    torque = evaluate(program, *np.broadcast_arrays(*given))[0]
+    if sharing == "least_norm" or len(robot.joint_names) == len(robot.pose_names):
+        return torque
+    limits = np.ones(torque.shape[-1]) if torque_limits is None else np.asarray(torque_limits, dtype=float)
+    return least_peak(robot.actuator_jacobian(given[0]), torque, limits)
+
+
+def _named(pose: Array, velocity: Array, acceleration: Array) -> list[tuple[str, Array]]:
+    return [("pose", pose), ("velocity", velocity), ("acceleration", acceleration)]
+
+
+def _build(robot: Mechanism, model: Model, payload: float) -> Build:
+    rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration")]
+    transposed, det = adjugate(model.drives.T)  # actuators and joints do the same work
+    joint_motion = derivatives_along(model.inverse, model.pose, rates)[1:]
+    torques = transposed @ _torques(robot, model, payload, rates, joint_motion) / det
+    return [model.pose, *rates], [torques + _friction(robot, model.drives @ joint_motion[0])]
+
+
+def _friction(robot: Mechanism, speed: ca.SX) -> ca.SX:
+    coulomb, viscous = (
+        ca.DM(robot.inertia.drive_train.of_actuators(name, speed.shape[0])) for name in ("coulomb", "viscous")
+    )
+    return coulomb * ca.sign(speed) * (ca.fabs(speed) > REST) + viscous * speed
+
+
+def moving_bodies(robot: Mechanism, model: Model, payload: float) -> Bodies:
+    """The mechanism's bodies with the motors behind their gears.
+
+    Raises:
+        InvalidValue: the payload is not a mass.
+    """
     if not (math.isfinite(payload) and payload >= 0.0):
         raise InvalidValue("payload", payload, "a finite mass >= 0 kg")
-
-    def build(model: Model) -> Build:
-        rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration")]
-        return [model.pose, *rates], [_at_actuators(model, _torques(robot, model, payload, rates))]
-
-    named = {"pose": pose, "velocity": velocity, "acceleration": acceleration}
-    given = [checked(v, name, robot.pose_names) for name, v in named.items()]
-    program = robot.program(("inverse_dynamics", payload, robot.inertia), build)
-    return evaluate(program, *np.broadcast_arrays(*given))[0]
-
-
-def _at_actuators(model: Model, torques: ca.SX) -> ca.SX:
-    """C^-T tau: actuators and joints do the same work."""
-    transposed, det = adjugate(model.drives.T)
-    return transposed @ torques / det
-
-
-def _torques(robot: Mechanism, model: Model, payload: float, rates: list[ca.SX]) -> ca.SX:
     bodies = robot.bodies(model.pose, model.joints, model.g, payload)
-    joint_rates = [ca.SX.sym(name, model.joints.shape[0]) for name in ("joint_velocity", "joint_acceleration")]
-    on_joints = model.at_pose(_generalised_force(bodies.of_joints, model.joints, joint_rates))
-    along = derivatives_along(model.inverse, model.pose, rates)[1:]
-    on_joints = ca.substitute(on_joints, ca.vertcat(*joint_rates), ca.vertcat(*along))
-    on_pose = robot.pose_rate_map(model.pose).T @ _generalised_force(bodies.of_pose, model.pose, rates)
-    if model.joints.shape[0] > model.pose.shape[0]:
+    count = len(robot.joint_names)
+    ratio, motor = (robot.inertia.drive_train.of_actuators(f, count) for f in ("gear_ratio", "motor_inertia"))
+    actuators = model.drives @ model.joints
+    bodies.rotors.extend(Rotor(ratio[k] ** 2 * motor[k], actuators[k]) for k in range(count) if motor[k])
+    return bodies
+
+
+def _torques(robot: Mechanism, model: Model, payload: float, rates: list[ca.SX], joint_motion: list[ca.SX]) -> ca.SX:
+    """(m,) of the joints, without friction."""
+    m = model.joints.shape[0]
+    joint_rates = [ca.SX.sym(name, m) for name in ("joint_velocity", "joint_acceleration")]
+    both = [ca.vertcat(q, x) for q, x in zip(joint_rates, rates, strict=True)]
+    force = _generalised_force(moving_bodies(robot, model, payload), ca.vertcat(model.joints, model.pose), both)
+    force = ca.substitute(model.at_pose(force), ca.vertcat(*joint_rates), ca.vertcat(*joint_motion))
+    on_joints, on_pose = force[:m], robot.pose_rate_map(model.pose).T @ force[m:]
+    if m > model.pose.shape[0]:
         j_m = model.inverse_jacobian
         cofactors, det = adjugate(j_m.T @ j_m)
         return on_joints + j_m @ (cofactors @ on_pose) / det
@@ -72,13 +117,13 @@ def _torques(robot: Mechanism, model: Model, payload: float, rates: list[ca.SX])
     return on_joints + model.j_q_at_pose * (transposed @ on_pose) / det
 
 
-def _generalised_force(bodies: BodySet, variable: ca.SX, rates: list[ca.SX]) -> ca.SX:
+def _generalised_force(bodies: Bodies, variable: ca.SX, rates: list[ca.SX]) -> ca.SX:
     """Sum of J^T m (a - g) over the particles and of the rotors' inertia torques, on the variable."""
     force = ca.SX(variable.shape[0], 1)
-    for mass, point in bodies.particles:
-        acceleration = derivatives_along(point, variable, rates)[2] + ca.vertcat(0, 0, GRAVITY)
-        force += ca.jacobian(point, variable).T @ (mass * acceleration)
-    for inertia, angle in bodies.rotors:
-        acceleration = derivatives_along(angle, variable, rates)[2]
-        force += ca.jacobian(angle, variable).T * (inertia * acceleration)
+    for particle in bodies.all_particles():
+        acceleration = derivatives_along(particle.point, variable, rates)[2] + ca.vertcat(0, 0, GRAVITY)
+        force += ca.jacobian(particle.point, variable).T @ (particle.mass * acceleration)
+    for rotor in bodies.rotors:
+        acceleration = derivatives_along(rotor.angle, variable, rates)[2]
+        force += ca.jacobian(rotor.angle, variable).T * (rotor.inertia * acceleration)
     return force

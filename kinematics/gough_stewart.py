@@ -14,7 +14,7 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import Bodies
+from kinematics.bodies import Bodies, InertiaRecord, Particle, Rotor
 from kinematics.errors import InvalidShape
 from kinematics.geometry import TURN
 from kinematics.gough_stewart_forward import ForwardSolution, assembly_modes, matched_pose, solve_forward
@@ -26,19 +26,21 @@ _SCREW = ("x", "y", "z", "about x", "about y", "about z")
 
 
 @dataclass(frozen=True)
-class GoughStewartInertia:
+class GoughStewartInertia(InertiaRecord):
     """Electric cylinders of a laboratory hexapod: an assumption of this project, not a datasheet. SI units.
 
     Attributes:
         screw_lead: of each cylinder [m/turn].
         drive: inertia of motor and screw about the screw's axis.
-        rod_mass: the moving end of each leg, a particle at B_i; the other end stays near A_i.
+        rod_mass, rod_length: the moving end of each leg, a thin uniform rod from B_i towards A_i; of length 0, a
+            particle at B_i. The other end stays near A_i, and its turning is left out.
         platform_mass: in six equal particles at the B_i; the payload is a particle at the tool point.
     """
 
     screw_lead: float = 0.010
     drive: float = 1.2e-4
     rod_mass: float = 0.8
+    rod_length: float = 0.0
     platform_mass: float = 12.0
 
 
@@ -259,11 +261,17 @@ class GoughStewart(Mechanism):
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
         """Screws driven by the joints; rods, platform and payload carried by the pose."""
-        i, bodies = self.inertia, Bodies()
-        ends = self.base_points(g) + self.legs(pose, g)
-        bodies.of_joints.rotors.extend((i.drive * (TURN / i.screw_lead) ** 2, joints[k]) for k in range(6))
-        bodies.of_pose.particles.extend((i.rod_mass + i.platform_mass / 6, ends[:, k]) for k in range(6))
-        bodies.of_pose.particles.append((payload, pose[:3]))
+        i, bodies = self.inertia, Bodies(self.inertia.rod_middle)
+        legs = self.legs(pose, g)
+        ends = self.base_points(g) + legs
+        shares = {0.0: 1 / 6, 0.5: 4 / 6, 1.0: 1 / 6} if i.rod_length else {0.0: 1.0}
+        for k in range(6):
+            bodies.rotors.append(Rotor(i.drive * (TURN / i.screw_lead) ** 2, joints[k]))
+            bodies.particles.append(Particle("platform", i.platform_mass / 6, ends[:, k]))
+            for place, share in shares.items():
+                point = ends[:, k] - place * i.rod_length / ca.norm_2(legs[:, k]) * legs[:, k]
+                bodies.particles.append(Particle(f"leg {k + 1}", share * i.rod_mass, point))
+        bodies.particles.append(Particle("platform", payload, pose[:3]))
         return bodies
 
     @staticmethod

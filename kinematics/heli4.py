@@ -14,7 +14,7 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import Bodies
+from kinematics.bodies import Bodies, InertiaRecord, Particle, Rotor
 from kinematics.errors import InvalidShape
 from kinematics.geometry import TURN, GeometryRecord, angle, length, screw_pitch
 from kinematics.heli4_forward import Plates, plates
@@ -58,14 +58,14 @@ class Heli4Geometry(GeometryRecord):
 
 
 @dataclass(frozen=True)
-class Heli4Inertia:
+class Heli4Inertia(InertiaRecord):
     """A drive set of the Quattro's class: an assumption of this project, not a datasheet. SI units.
 
     Attributes:
         drive: inertia of drive and gear at the joint.
         arm_mass, arm_centre, arm_factor: the arm's mass, its centre of mass c as a fraction of L, and its inertia about
             the joint over m c^2.
-        rod_pair_mass: both rods of a limb, half at each end.
+        rod_pair_mass: both rods of a limb.
         plate_masses: lower plate (limbs 1 and 2) and upper plate.
         tool: inertia of the tool about e_z; the payload is a point on the lower plate.
     """
@@ -158,14 +158,13 @@ class Heli4(RotaryLimbs, RodLevel):
         return ca.cross(*lines)[2] / model.g.rod_length**4
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
-        """Arms with their drives and half of the rods; plates, payload, tool and the rods' other half."""
-        i, rod_end = self.inertia, self.inertia.rod_pair_mass / 2
-        bodies = self.arm_bodies(joints, g, rod_end)
+        """Arms with their drives, rods, plates, payload and tool."""
+        i, plates = self.inertia, ("lower plate", "upper plate")
+        bodies = self.limb_bodies(pose, joints, g, i.rod_pair_mass, [plates[int(k)] for k in _UPPER])
         upper = pose[:3] + g.pitch / TURN * pose[3] * _E_Z
-        bodies.of_pose.particles.extend(
-            [(i.plate_masses[0] + payload + 2 * rod_end, pose[:3]), (i.plate_masses[1] + 2 * rod_end, upper)]
-        )
-        bodies.of_pose.rotors.append((i.tool, pose[3]))
+        lower = Particle(plates[0], i.plate_masses[0] + payload, pose[:3])
+        bodies.particles.extend([lower, Particle(plates[1], i.plate_masses[1], upper)])
+        bodies.rotors.append(Rotor(i.tool, pose[3]))
         return bodies
 
     @staticmethod

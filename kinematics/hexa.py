@@ -13,7 +13,7 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import Bodies
+from kinematics.bodies import Bodies, Particle
 from kinematics.errors import InvalidShape
 from kinematics.geometry import TURN, GeometryRecord, angle, length
 from kinematics.gough_stewart import GoughStewart
@@ -143,11 +143,11 @@ class Hexa(RotaryLimbs):
         return ca.repmat(g.arm_length * g.rod_length, 6, 1), hexapod * g.rod_length**6
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
-        """Arms with half of the rods; platform with the other half, payload."""
-        rod_end = self.inertia.rod_mass / 2
-        bodies, points = self.arm_bodies(joints, g, rod_end), self.platform_points(pose, g)
-        bodies.of_pose.particles.extend((self.inertia.platform_mass / 6 + rod_end, points[:, i]) for i in range(6))
-        bodies.of_pose.particles.append((payload, pose[:3]))
+        """Arms, rods, platform, payload."""
+        i, points = self.inertia, self.platform_points(pose, g)
+        bodies = self.limb_bodies(pose, joints, g, i.rod_mass, ["platform"] * 6)
+        bodies.particles.extend(Particle("platform", i.platform_mass / 6, points[:, k]) for k in range(6))
+        bodies.particles.append(Particle("platform", payload, pose[:3]))
         return bodies
 
     @classmethod

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from kinematics.block_program import BlockProgram
-from kinematics.bodies import require_masses
+from kinematics.bodies import InertiaRecord
 from kinematics.definition import Definition
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.geometry import GeometryRecord
@@ -37,11 +36,13 @@ class Mechanism(Definition):
     Every public method takes poses (..., n) or joints (..., m) with any leading shape.
     """
 
-    def __init__(self, geometry: GeometryRecord | None = None, inertia: Any = None) -> None:
+    def __init__(self, geometry: GeometryRecord | None = None, inertia: InertiaRecord | None = None) -> None:
         self.geometry = geometry if geometry is not None else self.Geometry()
         if not isinstance(self.geometry, self.Geometry):
             raise InvalidValue(f"{type(self).__name__} geometry", geometry, f"a {self.Geometry.__name__}")
-        self.inertia = require_masses(inertia if inertia is not None else self.Inertia())
+        self.inertia = inertia if inertia is not None else self.Inertia()
+        if not isinstance(self.inertia, self.Inertia):
+            raise InvalidValue(f"{type(self).__name__} inertia", inertia, f"a {self.Inertia.__name__}")
         self._programs: dict[object, BlockProgram] = {}
 
     def __repr__(self) -> str:

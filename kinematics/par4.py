@@ -16,7 +16,7 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import Bodies
+from kinematics.bodies import Bodies, Particle, Rotor
 from kinematics.distinct import distinct
 from kinematics.errors import InvalidShape
 from kinematics.geometry import GeometryRecord, angle, length, ratio
@@ -132,12 +132,14 @@ class Par4(RotaryLimbs):
         return super().margin_components(name, bounds, characteristic_length)
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
-        """Arms with half of the rods; halves with the other half, bars, tool, payload."""
-        i, psi = self.inertia, pose[3] / g.amplification
-        bodies, half = self.arm_bodies(joints, g, i.rod_mass / 2), self.half_bar(psi, g)
-        ends = [(mass + i.rod_mass, pose[:3] + side * half) for mass, side in zip(i.half_masses, (-1, 1), strict=True)]
-        bodies.of_pose.particles.extend([*ends, (i.bars_mass + payload, pose[:3])])
-        bodies.of_pose.rotors.extend([(i.bars_inertia, psi), (i.tool, pose[3])])
+        """Arms, rods, halves, bars, tool, payload."""
+        i, psi, halves = self.inertia, pose[3] / g.amplification, ("half 1", "half 2")
+        half = self.half_bar(psi, g)
+        bodies = self.limb_bodies(pose, joints, g, i.rod_mass, [halves[int(side > 0)] for side in _HALF])
+        for link, mass, side in zip(halves, i.half_masses, (-1, 1), strict=True):
+            bodies.particles.append(Particle(link, mass, pose[:3] + side * half))
+        bodies.particles.append(Particle("bars", i.bars_mass + payload, pose[:3]))
+        bodies.rotors.extend([Rotor(i.bars_inertia, psi), Rotor(i.tool, pose[3])])
         return bodies
 
     @classmethod

@@ -16,7 +16,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics import peppermill_limbs as limbs
-from kinematics.bodies import Bodies
+from kinematics.bodies import Bodies, InertiaRecord, Particle, Rod, Rotor
 from kinematics.drives import from_actuators, to_actuators
 from kinematics.errors import InvalidShape
 from kinematics.geometry import TURN, GeometryRecord, length, screw_pitch
@@ -56,7 +56,7 @@ class PeppermillGeometry(GeometryRecord):
 
 
 @dataclass(frozen=True)
-class PeppermillInertia:
+class PeppermillInertia(InertiaRecord):
     """A light machine with 750 W servos: an assumption of this project, not a datasheet. SI units.
 
     Attributes:
@@ -64,7 +64,7 @@ class PeppermillInertia:
         carriage_mass, carriage: what slides along a drive axis, and its inertia about that axis.
         proximal_mass, proximal_centre, proximal_factor: a proximal link's mass, its centre of mass c as a fraction of
             r_i, and its inertia about the drive axis over m c^2.
-        distal_mass: a distal link with its pairs, half at each end.
+        distal_mass: a distal link with its pairs.
         nut_mass: each nut of the platform's screws.
         platform_mass, tool: platform with its screws and tool, and its inertia about e_z; the payload is a point at C.
     """
@@ -224,26 +224,27 @@ class Peppermill(Mechanism):
         return origins, carriages, carriages + proximal, nuts
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
-        """Motors, carriages, proximal links, half of the distal ones; nuts with the other half, platform, payload."""
-        i, bodies = self.inertia, Bodies()
+        """Motors, carriages, proximal and distal links, nuts, platform, payload."""
+        i, bodies = self.inertia, Bodies(self.inertia.rod_middle)
         _, carriages, elbows, nuts = self.points(pose, joints, g)
         eta = self.drives(g) @ joints
-        bodies.of_joints.rotors.extend([(i.motor, eta[k]) for k in range(4)])
+        bodies.rotors.extend(Rotor(i.motor, eta[k]) for k in range(4))
         for limb in range(2):
             carriage, link = carriages[:, limb], elbows[:, limb] - carriages[:, limb]
             centre = i.proximal_centre * g.proximal_lengths[limb]
             own = (i.proximal_factor - 1) * i.proximal_mass * centre**2  # beyond the particle at the centre of mass
-            bodies.of_joints.particles.extend(
+            slide, proximal, nut = (f"{name} {limb + 1}" for name in ("carriage", "proximal", "nut"))
+            bodies.particles.extend(
                 [
-                    (i.carriage_mass, carriage),
-                    (i.proximal_mass, carriage + i.proximal_centre * link),
-                    (i.distal_mass / 2, elbows[:, limb]),
+                    Particle(slide, i.carriage_mass, carriage),
+                    Particle(proximal, i.proximal_mass, carriage + i.proximal_centre * link),
+                    Particle(nut, i.nut_mass, nuts[:, limb]),
                 ]
             )
-            bodies.of_joints.rotors.append((i.carriage + own, joints[2 + limb]))
-            bodies.of_pose.particles.append((i.nut_mass + i.distal_mass / 2, nuts[:, limb]))
-        bodies.of_pose.particles.append((i.platform_mass + payload, pose[:3]))
-        bodies.of_pose.rotors.append((i.tool, pose[3]))
+            bodies.rotors.append(Rotor(i.carriage + own, joints[2 + limb]))
+            bodies.rods.append(Rod(i.distal_mass, (nut, proximal), nuts[:, limb], elbows[:, limb]))
+        bodies.particles.append(Particle("platform", i.platform_mass + payload, pose[:3]))
+        bodies.rotors.append(Rotor(i.tool, pose[3]))
         return bodies
 
     @staticmethod

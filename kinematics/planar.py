@@ -14,7 +14,7 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import Bodies
+from kinematics.bodies import Bodies, InertiaRecord, Particle
 from kinematics.distinct import distinct
 from kinematics.errors import InvalidShape
 from kinematics.geometry import TURN, GeometryRecord, Points, length
@@ -70,12 +70,12 @@ class PlanarGeometry(GeometryRecord):
 
 
 @dataclass(frozen=True)
-class PlanarInertia:
+class PlanarInertia(InertiaRecord):
     """A small table-top robot: an assumption of this project, not a datasheet. SI units.
 
     Attributes:
         drive: a prismatic drive's moving inertia as seen at its joint [kg].
-        link_mass: of each leg's link, half at each end.
+        link_mass: of each leg's link; where the link changes its length, half at each end.
         platform_mass: in three equal particles at the B_i; the payload is a particle at the tool point.
     """
 
@@ -127,10 +127,10 @@ class Planar(Mechanism):
         return 1.5 * ca.sqrt(ca.sumsqr(points - ca.repmat(ca.sum2(points) / 3, 1, 3)))
 
     def platform_bodies(self, pose: ca.SX, g: SimpleNamespace, payload: float, bodies: Bodies) -> None:
-        """Adds platform, half of each link, and payload."""
-        points, share = self.platform_points(pose, g), self.inertia.platform_mass / 3 + self.inertia.link_mass / 2
-        bodies.of_pose.particles.extend((share, points[:, i]) for i in range(3))
-        bodies.of_pose.particles.append((payload, ca.vertcat(pose[:2], 0)))
+        """Adds platform and payload."""
+        points, share = self.platform_points(pose, g), self.inertia.platform_mass / 3
+        bodies.particles.extend(Particle("platform", share, points[:, i]) for i in range(3))
+        bodies.particles.append(Particle("platform", payload, ca.vertcat(pose[:2], 0)))
 
     @classmethod
     def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import Bodies
+from kinematics.bodies import Bodies, Rod, Rotor
 from kinematics.geometry import TURN, angle, length
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Array
@@ -82,8 +82,12 @@ class Planar3PRR(Planar):
         return g.rod_lengths, Planar.determinant_scale(g) * g.rod_lengths[0] * g.rod_lengths[1] * g.rod_lengths[2]
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
-        """Drives and half of each rod that the joints move; platform and the other half."""
-        bodies = Bodies()
-        bodies.of_joints.rotors.extend((self.inertia.drive + self.inertia.link_mass / 2, joints[i]) for i in range(3))
+        """Drives, rods and platform."""
+        bodies = Bodies(self.inertia.rod_middle)
+        slides, ends = self.circles(joints, g)[0], self.platform_points(pose, g)
+        for i in range(3):
+            bodies.rotors.append(Rotor(self.inertia.drive, joints[i]))
+            links = (f"slide {i + 1}", "platform")
+            bodies.rods.append(Rod(self.inertia.link_mass, links, slides[:, i], ends[:, i]))
         self.platform_bodies(pose, g, payload, bodies)
         return bodies

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import casadi as ca
 
-from kinematics.bodies import Bodies
+from kinematics.bodies import Bodies, Particle, Rotor
 from kinematics.geometry import TURN, length
 from kinematics.indices import FviBounds
 from kinematics.planar import Planar, PlanarGeometry, PlanarInertia, triangle
@@ -69,7 +69,8 @@ class Planar3RPR(Planar):
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
         """Drives that the joints move; platform and half of each leg, the other half staying at its base joint."""
-        bodies = Bodies()
-        bodies.of_joints.rotors.extend((self.inertia.drive, joints[i]) for i in range(3))
+        i, ends, bodies = self.inertia, self.platform_points(pose, g), Bodies(self.inertia.rod_middle)
+        bodies.rotors.extend(Rotor(i.drive, joints[k]) for k in range(3))
+        bodies.particles.extend(Particle("platform", i.link_mass / 2, ends[:, k]) for k in range(3))
         self.platform_bodies(pose, g, payload, bodies)
         return bodies

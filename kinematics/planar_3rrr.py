@@ -74,7 +74,7 @@ class Planar3RRR(Planar, RotaryLimbs):
         return g.arm_lengths * g.rod_lengths, Planar.determinant_scale(g) * rods
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
-        """Arms, drives and half of each rod that the joints move; platform and the other half."""
-        bodies = self.arm_bodies(joints, g, self.inertia.link_mass / 2)
+        """Arms, drives, rods and platform."""
+        bodies = self.limb_bodies(pose, joints, g, self.inertia.link_mass, ["platform"] * 3)
         self.platform_bodies(pose, g, payload, bodies)
         return bodies

@@ -18,7 +18,7 @@ import casadi as ca
 import numpy as np
 from scipy.linalg import block_diag
 
-from kinematics.bodies import Bodies
+from kinematics.bodies import Bodies, Particle, Rod, Rotor
 from kinematics.errors import InvalidShape
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
@@ -171,15 +171,15 @@ class Redundant3T1R(RodLevel):
         return ParallelSingularity(translation[..., 0], rotation[..., 0])
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
-        """Slides with half of their rods; platform, payload and the rods' other half."""
-        i, bodies = self.inertia, Bodies()
+        """Slides, rods, platform and payload."""
+        i, bodies = self.inertia, Bodies(self.inertia.rod_middle)
         rails, platform = self.rail_points(joints, g), self.platform_points(pose, g)
         for limb in range(_LIMBS):
-            half = i.rod_mass / 2 * (2 if limb in _PARALLELOGRAMS else 1)
-            bodies.of_joints.particles.append((i.slide_mass + half, rails[:, limb]))
-            bodies.of_pose.particles.append((half, platform[:, limb]))
-        bodies.of_pose.particles.append((i.platform_mass + payload, pose[:3]))
-        bodies.of_pose.rotors.append((i.platform_inertia, pose[3]))
+            slide, rods = f"slide {limb + 1}", i.rod_mass * (2 if limb in _PARALLELOGRAMS else 1)
+            bodies.particles.append(Particle(slide, i.slide_mass, rails[:, limb]))
+            bodies.rods.append(Rod(rods, (slide, "platform"), rails[:, limb], platform[:, limb]))
+        bodies.particles.append(Particle("platform", i.platform_mass + payload, pose[:3]))
+        bodies.rotors.append(Rotor(i.platform_inertia, pose[3]))
         return bodies
 
     @staticmethod

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from kinematics.bodies import InertiaRecord
 from kinematics.geometry import GeometryRecord, length
 
 _LEAST_SPREAD = 1e-4  # of rails, over the arms' length: the forward model loses as many digits as this has zeros
@@ -40,12 +41,12 @@ class Redundant3T1RGeometry(GeometryRecord):
 
 
 @dataclass(frozen=True)
-class Redundant3T1RInertia:
+class Redundant3T1RInertia(InertiaRecord):
     """A light machine with carbon arms: an assumption of this project, the paper gives no masses. SI units.
 
     Attributes:
         slide_mass: one carriage with the moving part of its linear motor.
-        rod_mass: one rod, half at each end; arms 3 and 4 have two.
+        rod_mass: one rod; arms 3 and 4 have two.
         platform_mass: at the tool centre point P, where the payload sits too.
         platform_inertia: of the platform about e_z through P.
     """

@@ -8,13 +8,14 @@ the line from B to P towards which a quarter turn from `zero` leads: outside, wh
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import casadi as ca
 
-from kinematics.bodies import Bodies
+from kinematics.bodies import Bodies, InertiaRecord, Particle, Rod, Rotor
 from kinematics.mechanism import Mechanism
 
 
@@ -84,14 +85,14 @@ def columns(point: ca.SX, count: int) -> ca.SX:
 
 
 @dataclass(frozen=True)
-class ArmInertia:
+class ArmInertia(InertiaRecord):
     """A drive set of the Quattro's class: an assumption of this project, not a datasheet. SI units.
 
     Attributes:
         drive: inertia of drive and gear at the joint.
         arm_mass, arm_centre, arm_factor: the arm's mass, its centre of mass c as a fraction of L, and its inertia about
             the joint over m c^2.
-        rod_mass: what joins an arm to the platform, one rod or two, half at each end.
+        rod_mass: what joins an arm to the platform, one rod or two.
     """
 
     drive: float = 0.045
@@ -142,17 +143,21 @@ class RotaryLimbs(Mechanism):
         """Of each arm and rod [m]."""
         return cls.limbs(g).reach(cls.platform_points(pose, g))
 
-    def arm_bodies(self, joints: ca.SX, g: SimpleNamespace, rod_end: float) -> Bodies:
-        """Arms with their drives, and `rod_end` [kg] at each elbow."""
-        i, bodies, limbs = self.inertia, Bodies(), self.limbs(g)
-        swing, elbows = limbs.swing(joints), limbs.elbows(joints)
+    def limb_bodies(
+        self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, rod_mass: float, platforms: Sequence[str]
+    ) -> Bodies:
+        """Arms with their drives, and from each elbow a rod of `rod_mass` [kg] to the link named in `platforms`."""
+        i, limbs = self.inertia, self.limbs(g)
+        bodies = Bodies(i.rod_middle)
+        swing, elbows, ends = limbs.swing(joints), limbs.elbows(joints), self.platform_points(pose, g)
         arms = ca.repmat(limbs.arm, joints.numel() // limbs.arm.numel(), 1)
         for limb in range(joints.numel()):
             centre = i.arm_centre * arms[limb]
-            bodies.of_joints.particles.append((i.arm_mass, limbs.actuators[:, limb] + centre * swing[:, limb]))
-            bodies.of_joints.particles.append((rod_end, elbows[:, limb]))
+            arm = f"arm {limb + 1}"
+            bodies.particles.append(Particle(arm, i.arm_mass, limbs.actuators[:, limb] + centre * swing[:, limb]))
             own = (i.arm_factor - 1) * i.arm_mass * centre**2  # beyond the particle at the centre of mass
-            bodies.of_joints.rotors.append((i.drive + own, joints[limb]))
+            bodies.rotors.append(Rotor(i.drive + own, joints[limb]))
+            bodies.rods.append(Rod(rod_mass, (platforms[limb], arm), ends[:, limb], elbows[:, limb]))
         return bodies
 
     @classmethod

@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -176,6 +176,30 @@ def report(
     outcome = _outcome(asked, robot, prove=True, known=known)
     files = write_report(outcome, folder, f"linkwright report {study}")
     console.print_outcome(outcome, files, json)
+
+
+@app.command()
+def export(
+    study: StudyArgument,
+    out: Annotated[Path, typer.Option("--out", help="The file to write.")],
+    format_: Annotated[Literal["mjcf"], typer.Option("--format", help="MJCF, MuJoCo's format.")] = "mjcf",  # noqa: ARG001
+    rods: Annotated[
+        Literal["split", "uniform"],
+        typer.Option("--rods", help="Masses at the rods' ends, as the torques of a study have it, or rods as bodies."),
+    ] = "split",
+    json: JsonOption = False,
+    prototype: PrototypeOption = False,
+) -> None:
+    """Write the committed optimum as a multibody model for a simulator, at the cycle's start or at home."""
+    from kinematics.bodies import UNIFORM
+    from studies import console
+    from studies.outputs import write_model
+
+    asked = _load(study)
+    robot = _robot(study, asked, prototype)
+    _require_writable(out.parent)
+    written = write_model(robot, asked, UNIFORM if rods == "uniform" else 0.0, out)
+    console.print_files([written], json)
 
 
 @app.command()

@@ -90,7 +90,7 @@ def print_outcome(outcome: Outcome, files: list[Path], as_json: bool) -> None:
         print_table("Held back by", ("active constraint",), [(item,) for item in outcome.active])
     if outcome.timing:
         print_timing(outcome.timing, [], False, outcome.prototype_timing)
-    _print_files(files)
+    print_files(files)
 
 
 def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Timing | None = None) -> None:
@@ -132,7 +132,7 @@ def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Ti
             piece.timed.verification.rows(),
         )
     _print_between(timing)
-    _print_files(files)
+    print_files(files)
 
 
 def _print_between(timing: Timing) -> None:
@@ -158,7 +158,7 @@ def print_proofs(question: Question, proofs: Sequence[Proof], files: list[Path],
         )
         return
     print_table(f"{question.study.name}, over {question.region}", PROOFS, proof_rows(proofs))
-    _print_files(files)
+    print_files(files)
 
 
 def print_checks(found: dict[str, list[Row]], as_json: bool) -> None:
@@ -214,7 +214,11 @@ def _figure(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def _print_files(files: list[Path]) -> None:
+def print_files(files: list[Path], as_json: bool = False) -> None:
+    """What was written."""
+    if as_json:
+        print_json({"files": files})
+        return
     for file in files:
         print(f"wrote {file}")
 

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from design import certificate_bytes
+from kinematics import Mechanism
+from kinematics.mjcf import mjcf
+from studies import setup
 from studies.certify import Proof
 from studies.committed_proofs import proof_files
 from studies.optimum import FILE, optimum_of
 from studies.pipeline import Outcome, Timing
 from studies.report import html_report, pictures_of
-from studies.schema import Trajectory
-from studies.setup import drive_of
-from trajectory import write_files
+from studies.schema import Study, Trajectory
+from trajectory import CannotWrite, write_files
 from trajectory.drive_files import drive_files
 
 
@@ -53,6 +58,30 @@ def write_proofs(proofs: Sequence[Proof], folder: Path) -> list[Path]:
     return write_files(folder, {f"{p.certificate.margin}.npz": certificate_bytes(p.certificate) for p in proofs})
 
 
+def write_model(robot: Mechanism, study: Study, rod_middle: float, file: Path) -> Path:
+    """The robot as an MJCF file that starts where the study's cycle does, with its payload; else at home, empty.
+
+    Args:
+        robot: whose geometry and masses are written.
+        study: asks for the cycle.
+        rod_middle: share of each rod's mass at its middle, in place of the robot's.
+        file: what to write.
+
+    Raises:
+        InvalidValue: the mechanism has no such model.
+        UnreachablePose: a limb cannot reach the start.
+        CannotWrite: the file cannot be written.
+    """
+    pose, payload = np.array(robot.home), 0.0
+    if study.trajectory is not None:
+        path, payload = setup.path_of(study.trajectory, robot.pose_names), study.trajectory.payload
+        (pose,) = path.evaluate(np.array(0.0), 0)
+    if file.is_dir():
+        raise CannotWrite(file, "it is a folder")
+    robot = type(robot)(robot.geometry, replace(robot.inertia, rod_middle=rod_middle))
+    return write_files(file.parent, {file.name: mjcf(robot, pose, payload)})[0]
+
+
 def write_setpoints(timing: Timing, asked: Trajectory, folder: Path) -> list[Path]:
     """Only the set-points, in the formats asked for.
 
@@ -64,7 +93,7 @@ def write_setpoints(timing: Timing, asked: Trajectory, folder: Path) -> list[Pat
 
 
 def _setpoints(timing: Timing, asked: Trajectory) -> dict[str, str | bytes]:
-    drive = drive_of(asked.drive)
+    drive = setup.drive_of(asked.drive)
     files = drive_files("cycle", timing.setpoints, asked.files, drive)
     if timing.approach is not None:
         files |= drive_files("approach", timing.approach.setpoints, asked.files, drive)

@@ -1,8 +1,8 @@
 """Repair of a motion that breaks its limits by a little: the least stretch of time that brings every peak within.
 
-Stretching time by f divides speeds by f, accelerations by f^2 and jerks by f^3. Torque keeps the weight's part c, so
-with g = 1 / f^2 it is c + g (tau - c), linear in g: each sample that is too high gives its largest g, and the least
-of them is the factor. The stretched motion is then verified from scratch.
+Stretching time by f divides speeds by f, accelerations by f^2 and jerks by f^3. Torque keeps the part c of weight and
+Coulomb friction, so with h = 1 / f and viscous friction v it is c + h v + h^2 (tau - v - c): each sample that is too
+high gives its largest h, and the least of them is the factor. The stretched motion is then verified from scratch.
 """
 
 from __future__ import annotations
@@ -76,19 +76,22 @@ def _torque_factor(robot: Mechanism, timed: TimedMotion, limits: Limits, payload
     """The least stretch that keeps the torque limits.
 
     Raises:
-        LimitsExceeded: the weight alone is beyond a limit.
+        LimitsExceeded: weight and Coulomb friction alone are beyond a limit.
     """
     limit = limits.of_joints("torque", len(robot.joint_names))
     if limit is None:
         return 1.0
     motion = motion_of(robot, timed.within(sampling(timed))[1], payload)
     rest = np.zeros_like(motion.tool.pose)
-    weight = inverse_dynamics(robot, payload, motion.tool.pose, rest, rest)
-    static = float((np.abs(weight) / limit).max())
+    coulomb, viscous = robot.inertia.drive_train.friction(motion.joints.first)
+    constant = inverse_dynamics(robot, payload, motion.tool.pose, rest, rest) + coulomb
+    static = float((np.abs(constant) / limit).max())
     if not static < 1.0:
         raise LimitsExceeded({"torque at rest": static}, 1.0)
     over = np.abs(motion.torque) > limit
     if not over.any():
         return 1.0
-    allowed = (np.sign(motion.torque) * limit - weight)[over] / (motion.torque - weight)[over]
-    return float(allowed.min() ** -0.5)
+    side = np.sign(motion.torque)[over]
+    square, linear = side * (motion.torque - viscous - constant)[over], side * viscous[over]
+    left = np.broadcast_to(limit, motion.torque.shape)[over] - side * constant[over]
+    return float(((linear + np.sqrt(linear**2 + 4 * square * left)) / (2 * left)).max())

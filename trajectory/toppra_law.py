@@ -4,13 +4,14 @@ Pham and Pham, "A new approach to time-optimal path parameterization based on re
 Along a path, with u = s'' and x = s'^2, every limit that is kept here is linear in (u, x):
 
     joint acceleration   q' u + q'' x
-    torque               (tau(p, 0, p') - c) u + (tau(p, p', p'') - c) x + c,  c = tau(p, 0, 0)
+    torque               (tau(p, 0, p') - w) u + (tau(p, p', p'') - f - w) x + w + f,  w = tau(p, 0, 0)
     tool acceleration    p' u + p'' x, in the plane of the path's tangent and normal
     joint speed          |q'| sqrt(x),  tool speed  |p'| sqrt(x)
 
-with a dash for the derivative by the path parameter. The coefficients are exact at the gridpoints, where the limits are
-kept on both sides (toppra's interpolation scheme); in between they are kept to the order of the grid, which
-`verify` measures. The law has bang-bang s'': it keeps no jerk limit and refuses one.
+with a dash for the derivative by the path parameter and f the Coulomb friction, whose sign along the path is that of
+q'; viscous friction is linear in sqrt(x), so this law refuses it. The coefficients are exact at the gridpoints, where
+the limits are kept on both sides (toppra's interpolation scheme); in between they are kept to the order of the grid,
+which `verify` measures. The law has bang-bang s'': it keeps no jerk limit and refuses one.
 """
 
 from __future__ import annotations
@@ -50,7 +51,8 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
         intervals: N, of equal arc length, at least 1000.
 
     Raises:
-        InvalidValue: a jerk limit, too few intervals, a negative payload, or another kind of pose.
+        InvalidValue: a jerk limit, viscous friction where torque is limited, too few intervals, a negative payload, or
+            another kind of pose.
         RoughPath: the path has a cusp or a kink.
         UnreachablePose: a limb cannot reach a pose of the path; the limb and its margin are named.
         TimingFailed: there is no law within the limits, as where the weight alone is beyond the torque.
@@ -58,6 +60,9 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     require_poses_of(robot, path)
     if limits.jerk is not None:
         raise InvalidValue("Limits jerk for the toppra law", limits.jerk, "None: its s'' is bang-bang")
+    viscous = robot.inertia.drive_train.viscous
+    if limits.torque is not None and np.any(np.asarray(viscous) > 0.0):
+        raise InvalidValue("DriveTrain viscous for the toppra law", viscous, "0: its limits are linear in s'^2, not s'")
     if intervals < LEAST_INTERVALS:
         raise InvalidValue("intervals of the toppra law", intervals, f"at least {LEAST_INTERVALS}")
     if not (math.isfinite(payload) and payload >= 0.0):
@@ -94,11 +99,21 @@ def _path_limits(
     if torque is not None:
         weight = inverse_dynamics(robot, payload, pose, none, none)
         by_u = inverse_dynamics(robot, payload, pose, none, first) - weight
-        by_x = inverse_dynamics(robot, payload, pose, first, second) - weight
-        rows.append((by_u / torque, by_x / torque, weight / torque))
+        ways = [inverse_dynamics(robot, payload, pose, way * first, second) for way in (1.0, -1.0)]
+        by_x = sum(ways) / 2 - weight  # friction changes its sign with the way
+        rows += [(by_u / torque, by_x / torque, (weight + f) / torque) for f in _coulomb(robot, joints.first)]
     if limits.tool_acceleration is not None:
         rows.append(_tool_rows(first[:, :tool], second[:, :tool], limits.tool_acceleration))
     return highest, rows
+
+
+def _coulomb(robot: Mechanism, rates: Array) -> list[Array]:
+    """(N + 1, m) friction before and after each gridpoint: it jumps where a joint turns back, and to 0 at rest."""
+    train = robot.inertia.drive_train
+    if not np.any(train.coulomb):
+        return [np.zeros_like(rates)]
+    padded = np.pad(rates, ((1, 1), (0, 0)))
+    return [train.friction(padded[:-2])[0], train.friction(padded[2:])[0]]
 
 
 def _tool_rows(first: Array, second: Array, cap: float) -> Coefficients:

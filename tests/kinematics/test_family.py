@@ -233,8 +233,7 @@ def test_a_resting_robot_bears_its_weight(kind):
     rest = np.zeros_like(poses)
     model = kind.model()
     bodies = robot.bodies(model.pose, model.joints, model.g, 2.0)
-    parts = [*bodies.of_joints.particles, *bodies.of_pose.particles]
-    energy = sum((mass * GRAVITY * point[2] for mass, point in parts), ca.SX(0))
+    energy = sum((p.mass * GRAVITY * p.point[2] for p in bodies.all_particles()), ca.SX(0))
     height = ca.Function("e", [model.pose, model.joints, model.geometry], [energy])
 
     def potential(x):

@@ -141,7 +141,9 @@ def test_the_header_says_what_the_set_points_are_for(file: Path, robot: Heli4, c
     assert header["cycle time after stretching [s]"] == pytest.approx(0.256)
     assumptions = " ".join(header["assumptions"])
     assert "assumed drive set" in assumptions
-    assert "mass of each rod is split" in assumptions
+    assert "rod_middle" in assumptions
+    assert "rod_middle=0.0" in header["inertia"]
+    assert "coulomb=0.0, viscous=0.0" in header["inertia"]
     lines = file.read_text().splitlines()
     above = next(k for k, line in enumerate(lines) if not line.startswith("#"))
     assert all(line.startswith("# ") for line in lines[:above])

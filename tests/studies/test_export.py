@@ -1,0 +1,102 @@
+"""`linkwright export`: the model of a committed optimum, for a simulator."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from xml.etree import ElementTree
+
+import mujoco
+import numpy as np
+import pytest
+
+from studies.cli import main
+from studies.load import load_study
+from studies.locate import FOLDER
+from studies.optimum import committed
+from studies.setup import robot_of
+
+
+@pytest.fixture(autouse=True)
+def fake_mechanism() -> None:
+    """The real mechanisms here, in place of the other files' stand-in."""
+
+
+def linkwright(monkeypatch: pytest.MonkeyPatch, *words: object) -> None:
+    monkeypatch.setattr("sys.argv", ["linkwright", *map(str, words)])
+    with pytest.raises(SystemExit) as left:
+        main()
+    if left.value.code:
+        raise left.value
+
+
+@pytest.mark.parametrize("rods", ["split", "uniform"])
+@pytest.mark.parametrize("study", ["heli4", "redundant_3t1r", "peppermill", "gough_stewart"])
+def test_the_file_starts_at_the_studys_cycle_with_its_loops_closed(
+    study: str, rods: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "models" / "robot.xml"
+    linkwright(monkeypatch, "export", study, "--format", "mjcf", "--rods", rods, "--out", file, "--json")
+    assert json.loads(capsys.readouterr().out) == {"files": [str(file)]}
+    model = mujoco.MjModel.from_xml_path(str(file))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    assert np.abs(data.efc_pos).max() < 1e-14
+    asked = load_study(FOLDER / study / "study.toml")
+    robot = committed(asked, FOLDER / study) or robot_of(asked)
+    start = [*asked.trajectory.cycle.pick, 0.0] if asked.trajectory else robot.home
+    assert [data.joint(name).qpos[0] for name in robot.pose_names] == pytest.approx(start, abs=1e-15)
+    joints = [data.joint(name).qpos[0] for name in robot.joint_names]
+    assert joints == pytest.approx(robot.inverse(np.array(start)).tolist(), abs=1e-14)
+
+
+def test_prototype_and_optimum_are_different_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    texts = []
+    for more in ([], ["--prototype"]):
+        linkwright(monkeypatch, "export", "heli4", "--out", tmp_path / "robot.xml", *more)
+        texts.append((tmp_path / "robot.xml").read_text())
+        assert ElementTree.fromstring(texts[-1]).tag == "mujoco"
+    assert texts[0] != texts[1]
+    assert [p.name for p in tmp_path.iterdir()] == ["robot.xml"]
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["heli4", "--format", "urdf", "--out", "robot.xml"], "'urdf' is not"),
+        (["heli4", "--rods", "thick", "--out", "robot.xml"], "'thick' is not"),
+        (["heli4"], "--out"),
+        (["heli5", "--out", "robot.xml"], "heli5"),
+        (["heli4", "--out", "folder"], "folder"),
+    ],
+)
+def test_wrong_input_exits_2_and_leaves_nothing(
+    words: list[str],
+    message: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(SystemExit) as left:
+        linkwright(monkeypatch, "export", *words)
+    assert left.value.code == 2
+    assert message in capsys.readouterr().err
+    assert [p.name for p in tmp_path.rglob("*")] == ["folder"]
+
+
+def test_a_mechanism_without_a_model_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    study = tmp_path / "delta" / "study.toml"
+    study.parent.mkdir()
+    study.write_text(
+        'title = "Delta"\nmechanism = "Delta"\n[region]\nkind = "box"\n'
+        "x = [-0.1, 0.1]\ny = [-0.1, 0.1]\nz = [-0.8, -0.7]\n"
+        '[[requirement]]\nmargin = "reach"\nat_least = 0.0\n'
+    )
+    with pytest.raises(SystemExit) as left:
+        linkwright(monkeypatch, "export", study, "--out", tmp_path / "delta.xml")
+    assert left.value.code == 2
+    assert "Delta; expected one of Heli4, Redundant3T1R, Peppermill, GoughStewart" in capsys.readouterr().err
