@@ -92,7 +92,7 @@ def print_outcome(outcome: Outcome, files: list[Path], as_json: bool) -> None:
         print_table("Held back by", ("active constraint",), [(item,) for item in outcome.active])
     if outcome.timing:
         print_timing(outcome.timing, [], False, outcome.prototype_timing)
-    _print_files(files)
+    print_files(files)
 
 
 def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Timing | None = None) -> None:
@@ -116,7 +116,7 @@ def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Ti
         ("quantity", "peak", "limit", "peak over limit", "joint", "at [s]"),
         verification.rows(),
     )
-    _print_files(files)
+    print_files(files)
 
 
 def print_checks(found: dict[str, list[Row]], as_json: bool) -> None:
@@ -156,7 +156,8 @@ def _figure(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def _print_files(files: list[Path]) -> None:
+def print_files(files: list[Path]) -> None:
+    """One line a file."""
     for file in files:
         print(f"wrote {file}")
 

@@ -28,7 +28,7 @@ _LINES = {
 }
 _DASHES = ("-", "--")  # symmetric joints move alike: every second one leaves gaps for the other
 _OTHERS = 289  # about how many poses of the other coordinates stand behind a point of a map
-_STYLE: Any = {
+STYLE: Any = {
     "font.size": 9,
     "axes.titlesize": 10,
     "axes.spines.top": False,
@@ -86,7 +86,7 @@ def section_of(problem: Problem, robot: Mechanism, region: Region, margin: str, 
 
 def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
     """Each robot in 3-D at its home pose, in the same scale, with the workspace's edge."""
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.6 * len(robots), 4.2))
         drawn = {label: robot.polylines(np.array(robot.home)) for label, robot in robots.items()}
         box = _common_box([line for lines in drawn.values() for line in lines.values()] + region.outline())
@@ -103,7 +103,7 @@ def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
             axes.set_aspect("equal")
             axes.set_box_aspect(None, zoom=1.1)
             axes.view_init(elev=18, azim=-60)
-        return _png(figure)
+        return png(figure)
 
 
 def _common_box(lines: list[Array]) -> list[tuple[float, float]]:
@@ -114,7 +114,7 @@ def _common_box(lines: list[Array]) -> list[tuple[float, float]]:
 
 def map_picture(sections: dict[str, Section], title: str, bound: float | None) -> bytes:
     """Worst value over the plane, one panel a robot, same colours; the bound as a red line where it is crossed."""
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(4.9 * len(sections), 4.2), layout="constrained")
         everything = np.concatenate([s.worst[np.isfinite(s.worst)] for s in sections.values()])
         panels: list[Axes] = list(np.atleast_1d(figure.subplots(1, len(sections), sharey=True)))
@@ -135,12 +135,12 @@ def map_picture(sections: dict[str, Section], title: str, bound: float | None) -
             axes.grid(False)
         panels[0].set_ylabel(_axis(section.names[1]))
         figure.colorbar(mesh, ax=panels, label=title)
-        return _png(figure)
+        return png(figure)
 
 
 def path_picture(poses: Array, time: Array, names: Sequence[str]) -> bytes:
     """The tool's path in its plane, and each pose coordinate over time."""
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.8, 3.2), layout="constrained")
         left, right = figure.subplots(1, 2)
         across = np.hypot(*(poses[:, :2] - poses[0, :2]).T)
@@ -152,7 +152,7 @@ def path_picture(poses: Array, time: Array, names: Sequence[str]) -> bytes:
             right.plot(1e3 * time, factor * (poses[:, k] - poses[0, k]), color=_COLOURS[k], label=f"{name} [{unit}]")
         right.set(title="pose from the start", xlabel="time [ms]")
         right.legend(frameon=False)
-        return _png(figure)
+        return png(figure)
 
 
 def motion_picture(time: Array, rows: Sequence[tuple[str, Array, Array | None]], joints: Sequence[str]) -> bytes:
@@ -163,7 +163,7 @@ def motion_picture(time: Array, rows: Sequence[tuple[str, Array, Array | None]],
         rows: label, values (k, m), limits (m,) or None.
         joints: the joints' names.
     """
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.8, 2.3 * len(rows)), layout="constrained")
         panels: list[Axes] = list(np.atleast_1d(figure.subplots(len(rows), 1, sharex=True)))
         for axes, (label, values, limits) in zip(panels, rows, strict=True):
@@ -177,14 +177,15 @@ def motion_picture(time: Array, rows: Sequence[tuple[str, Array, Array | None]],
             *panels[0].get_legend_handles_labels(), loc="outside upper right", ncols=len(joints), frameon=False
         )
         panels[-1].set_xlabel("time [ms]")
-        return _png(figure)
+        return png(figure)
 
 
 def _axis(name: str) -> str:
     return f"{name} [{'m' if name in ('x', 'y', 'z') else 'rad'}]"
 
 
-def _png(figure: Figure) -> bytes:
+def png(figure: Figure) -> bytes:
+    """The figure, drawn; the same bytes for the same figure."""
     figure.set_dpi(130)
     buffer = io.BytesIO()
     FigureCanvasAgg(figure).print_png(buffer, metadata={"Software": None})
