@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 from studies.check import shown_pose
@@ -17,12 +18,17 @@ def print_map(outcome: MapOutcome, files: list[Path], as_json: bool) -> None:
         rings = [ring.tolist() for ring in outcome.found.boundary]
         print_json({**outcome.header(), **figures, "boundary": rings, "files": files})
         return
-    request, moved = outcome.request, figures["moved"]
+    request, moved, worst = outcome.request, figures["moved"], figures["worst"]
     rows = [
         (f"area [{unit}]", f"{figures['area']:.6g}", f"{moved['area']:.2g}", ""),
         ("mean over it", f"{figures['mean']:.6g}", f"{moved['mean']:.2g}", ""),
         ("standard deviation over it", f"{figures['deviation']:.6g}", f"{moved['deviation']:.2g}", ""),
-        ("worst in the plane", f"{figures['worst']:.6g}", "", shown_pose(outcome.found.map.lowest[1])),
+        (
+            "worst in the plane",
+            f"{worst:.6g}" if math.isfinite(worst) else "out of reach",
+            "",
+            shown_pose(outcome.found.map.lowest[1]),
+        ),
     ]
     rest = request.section.rest(request.robot.pose_names)
     title = f"{bound_label(outcome)}; {request.section}" + (f"; worst over {', '.join(rest)}" if rest else "")

@@ -10,8 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle, Patch, PathPatch
+from matplotlib.patches import Circle, Patch
 from matplotlib.path import Path
+from matplotlib.ticker import MaxNLocator
 
 from design import Cylinder
 from design.level_set import boundary
@@ -29,18 +30,25 @@ def map_picture(outcome: MapOutcome) -> bytes:
     """One panel: filled contours, the bound in red, the certified region in white, open boxes in black."""
     request, chart = outcome.request, outcome.found.map
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(6.2, 4.8), layout="constrained")
-        axes = figure.subplots()
         angles = angles_of(request.robot)
         scale = np.array([180.0 / np.pi if name in angles else 1.0 for name in request.section.axes])
-        draw_contours(figure, axes, chart, request.index.name, scale)
+        figure = Figure(figsize=(2.6 + _panel_width(chart, angles), 4.8), layout="constrained")
+        axes = figure.subplots()
+        draw_contours(figure, axes, chart, request.index.name, scale, request.bound)
         drawn: list[Patch | Line2D] = [draw_boundary(axes, outcome.found.boundary, scale, bound_label(outcome))]
         if outcome.certified is not None:
             drawn += _draw_certified(axes, outcome, scale)
         label_axes(axes, request.section.axes, angles)
-        axes.set_title(_title(outcome))
-        axes.legend(handles=drawn, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=len(drawn), frameon=False)
+        figure.suptitle(_title(outcome), fontsize=9)
+        figure.legend(handles=drawn, loc="outside lower center", ncols=1 if len(drawn) < 3 else 2, frameon=False)
         return png(figure)
+
+
+def _panel_width(chart: Map, angles: Sequence[str]) -> float:
+    """Inches for a panel 3.6 high: to scale where both axes are lengths."""
+    if set(chart.section.axes) & set(angles):
+        return 3.6
+    return float(np.clip(3.6 * np.ptp(chart.first) / np.ptp(chart.second), 1.8, 6.0))
 
 
 def bound_label(outcome: MapOutcome) -> str:
@@ -51,19 +59,33 @@ def bound_label(outcome: MapOutcome) -> str:
     return f"{request.index.name} {'<=' if request.index.smaller_is_better else '>='} {request.bound:g}, sampled"
 
 
-def draw_contours(figure: Figure, axes: Axes, chart: Map, name: str, scale: Array) -> None:
-    """Filled and labelled contours of a map, cut off at the region's boundary."""
+def draw_contours(figure: Figure, axes: Axes, chart: Map, name: str, scale: Array, bound: float | None) -> None:
+    """Filled and labelled contours of a map, cut off at the region's boundary; fine where the bound is kept."""
     first, second, values = scale[0] * chart.first, scale[1] * chart.second, np.ma.masked_invalid(chart.values)
-    filled = axes.contourf(first, second, values, levels=_LEVELS, cmap="viridis")
-    lines = axes.contour(first, second, values, levels=filled.levels, colors="k", linewidths=0.3, alpha=0.6)
-    axes.clabel(lines, np.asarray(filled.levels)[1:-1:2], fontsize=6, inline_spacing=2)
+    levels = _levels(chart, bound)
+    filled = axes.contourf(first, second, values, levels=levels, cmap="viridis", extend="both")
+    lines = axes.contour(first, second, values, levels=levels, colors="k", linewidths=0.3, alpha=0.6)
+    axes.clabel(lines, levels[::2], fontsize=6, inline_spacing=2)
     if np.isfinite(chart.inset).all():
-        rings = [scale * ring for ring in boundary(chart, None)]
-        clip = PathPatch(Path.make_compound_path(*(Path(ring) for ring in rings)), transform=axes.transData)
-        for artist in (filled, lines, *lines.labelTexts):
-            artist.set_clip_path(clip)
+        edge = Path.make_compound_path(*(Path(scale * ring) for ring in boundary(chart, None)))
+        for artist in (filled, lines):
+            artist.set_clip_path(edge, axes.transData)
+        for text in lines.labelTexts:
+            text.set_visible(edge.contains_point(text.get_position()))
     figure.colorbar(filled, ax=axes, label=name)
     axes.grid(False)
+
+
+def _levels(chart: Map, bound: float | None) -> Array:
+    """Round contour levels over the part that keeps the bound, and as far again on the bound's other side."""
+    values = chart.values[(chart.inset >= 0.0) & np.isfinite(chart.values)]
+    if not values.size:
+        return np.array([0.0, 1.0])
+    low, high = float(values.min()), float(values.max())
+    if bound is not None and low < bound < high:
+        reach = bound - low if chart.smaller_is_better else high - bound
+        low, high = max(low, bound - reach), min(high, bound + reach)
+    return MaxNLocator(_LEVELS).tick_values(low, max(high, low + 1e-9 * max(1.0, abs(low))))
 
 
 def draw_boundary(axes: Axes, rings: Sequence[Array], scale: Array, label: str, colour: str = BOUND) -> Line2D:
@@ -98,12 +120,12 @@ def _draw_certified(axes: Axes, outcome: MapOutcome, scale: Array) -> list[Patch
     elif proof.radius > 0.0:
         label = f"proved, radius {proof.radius:.3f} m"
         if set(plane) == {"x", "y"}:
-            axes.add_patch(Circle((0, 0), proof.radius, fill=False, edgecolor=PROVED, linewidth=2))
+            axes.add_patch(Circle((0, 0), proof.radius, fill=False, edgecolor=PROVED, linewidth=1.6, linestyle="--"))
         for k, name in enumerate(plane):
             if name in ("x", "y") and len(set(plane) & {"x", "y"}) == 1:
                 for side in (-proof.radius, proof.radius):
-                    (axes.axvline, axes.axhline)[k](side, color=PROVED, linewidth=2)
-        handles.append(Patch(facecolor="#888888", edgecolor=PROVED, linewidth=2, label=label))
+                    (axes.axvline, axes.axhline)[k](side, color=PROVED, linewidth=1.6, linestyle="--")
+        handles.append(Patch(facecolor="#888888", edgecolor=PROVED, linewidth=1.6, linestyle="--", label=label))
     if len(proof.left):
         columns = [outcome.request.robot.pose_names.index(name) for name in plane]
         corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])

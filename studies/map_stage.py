@@ -27,7 +27,7 @@ class MapOutcome:
     def area_unit(self) -> str:
         """Of the plane: the product of its axes' units."""
         units = [unit_of(self.request, name) for name in self.request.section.axes]
-        return f"{units[0]}^2" if units[0] == units[1] else " ".join(units)
+        return f"{units[0]}²" if units[0] == units[1] else " ".join(units)
 
     @property
     def certified_area(self) -> float | None:
@@ -41,8 +41,7 @@ class MapOutcome:
 
     def header(self) -> dict[str, Any]:
         """What made the numbers, as plain data."""
-        r, lengths = self.request, {"first": len(self.found.map.first), "second": len(self.found.map.second)}
-        worst = r.section.rest(r.robot.pose_names)
+        r = self.request
         return {
             "linkwright": version("linkwright"),
             "mechanism": type(r.robot).__name__,
@@ -50,11 +49,11 @@ class MapOutcome:
             "index": r.index.name,
             "bound": r.bound,
             "section": str(r.section),
-            "worst_over": worst,
+            "worst_over": r.section.rest(r.robot.pose_names),
             "region": repr(r.section.region),
             "fvi_bounds": vars(r.fvi_bounds),
             "characteristic_length": r.characteristic_length,
-            "nodes": lengths,
+            "nodes": list(self.found.map.values.shape[::-1]),
         }
 
     def figures(self) -> dict[str, Any]:
