@@ -2,11 +2,23 @@
 
 from design.certificate import BestBound, Certificate, best_bound, certify
 from design.certificate_file import load_certificate, save_certificate
-from design.errors import BrokenCertificate, InvalidRegion, OtherCertificate, SynthesisFailed
+from design.certified import CertifiedRegion, certified_cells, certified_cylinder
+from design.errors import (
+    BrokenCertificate,
+    InvalidRegion,
+    InvalidSection,
+    NotConverged,
+    OtherCertificate,
+    SynthesisFailed,
+)
+from design.index import Index, index_names, index_of
+from design.level_set import LevelSet, level_set
+from design.maps import Map, map_of
 from design.region import Box, Cylinder, Region
 from design.replay import replay
 from design.requirement import Bounds, Requirement, SumLimit
 from design.search import WorstPoses, worst_poses
+from design.section import Section
 
 __all__ = [
     "BestBound",
@@ -14,17 +26,30 @@ __all__ = [
     "Box",
     "BrokenCertificate",
     "Certificate",
+    "CertifiedRegion",
     "Cylinder",
+    "Index",
     "InvalidRegion",
+    "InvalidSection",
+    "LevelSet",
+    "Map",
+    "NotConverged",
     "OtherCertificate",
     "Region",
     "Requirement",
+    "Section",
     "SumLimit",
     "SynthesisFailed",
     "WorstPoses",
     "best_bound",
+    "certified_cells",
+    "certified_cylinder",
     "certify",
+    "index_names",
+    "index_of",
+    "level_set",
     "load_certificate",
+    "map_of",
     "replay",
     "save_certificate",
     "worst_poses",

@@ -23,7 +23,7 @@ from kinematics.errors import InvalidValue
 
 Array = np.ndarray
 COARSEST = 33  # nodes along an axis
-FINEST = 1025
+FINEST = 513
 TOLERANCE = 1e-3
 _GOOD, _INSET = 2, 3  # columns of a vertex, after its two coordinates
 

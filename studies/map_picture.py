@@ -85,7 +85,7 @@ def _levels(chart: Map, bound: float | None) -> Array:
     if bound is not None and low < bound < high:
         reach = bound - low if chart.smaller_is_better else high - bound
         low, high = max(low, bound - reach), min(high, bound + reach)
-    return MaxNLocator(_LEVELS).tick_values(low, max(high, low + 1e-9 * max(1.0, abs(low))))
+    return np.asarray(MaxNLocator(_LEVELS).tick_values(low, max(high, low + 1e-9 * max(1.0, abs(low)))))
 
 
 def draw_boundary(axes: Axes, rings: Sequence[Array], scale: Array, label: str, colour: str = BOUND) -> Line2D:
