@@ -12,7 +12,7 @@ from design.errors import (
     SynthesisFailed,
 )
 from design.index import Index, index_names, index_of
-from design.level_set import LevelSet, level_set
+from design.level_sets import LevelSet, level_set
 from design.maps import Map, map_of
 from design.region import Box, Cylinder, Region
 from design.replay import replay

@@ -146,6 +146,8 @@ def certified_cells(
         raise InvalidSection("cells", repr(region), "a Box; a Cylinder has `certified_cylinder`")
     if not 0 <= depth <= 10:
         raise InvalidValue("depth", depth, "a whole number from 0 to 10")
+    if not np.isfinite(at_least):
+        raise InvalidValue("at_least", at_least, "a finite number")
     started, names = time.perf_counter(), robot.pose_names
     if margin not in robot.margins:
         raise InvalidValue(f"{type(robot).__name__} margin", margin, f"one of {', '.join(robot.margins)}")

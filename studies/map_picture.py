@@ -15,7 +15,7 @@ from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 
 from design import Cylinder
-from design.level_set import boundary
+from design.level_sets import boundary
 from design.maps import Map
 from studies.map_options import angles_of
 from studies.map_stage import MapOutcome

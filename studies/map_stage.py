@@ -11,7 +11,7 @@ import numpy as np
 
 from design import Box, Cylinder, Region
 from design.certified import CertifiedRegion, certified_cells, certified_cylinder
-from design.level_set import LevelSet, level_set
+from design.level_sets import LevelSet, level_set
 from studies.map_options import InvalidOption, MapRequest, angles_of
 
 

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from design import Box, Section, certified_cells, certified_cylinder, index_of, level_set, map_of
 from design.certified import CertifiedRegion
-from design.level_set import LevelSet
+from design.level_sets import LevelSet, boundary
 from design.region import Cylinder
 from kinematics import Heli4, Redundant3T1R
 from studies.map_picture import draw_boundary, draw_cells, draw_contours, label_axes
@@ -43,7 +43,8 @@ def main() -> None:
     value, pose = lowest_between()
     _write("map_null_orientation.png", [("theta = 0", "boundary"), ("theta = 0", "contours")], found, None)
     _write("map_nine_angles.png", [("nine angles", "boundary"), ("nine angles", "contours")], found, None)
-    _write("map_between_angles.png", [("every angle", "between"), ("every angle", "contours")], found, proof)
+    _write("map_certified.png", [("every angle", "boundary"), ("every angle", "contours")], found, proof)
+    _write_between(found, pose)
     lines = [*_table(found), *_conventions(), *_between(found, value, pose), *_certified(found, proof)]
     page = DOCS / "maps.md"
     before, rest = page.read_text().split(START)
@@ -72,7 +73,7 @@ def _write(name: str, panels: list[tuple[str, str]], found: dict[str, LevelSet],
         figure = Figure(figsize=(6.4, 4.6), layout="constrained")
         for axes, (case, what) in zip(figure.subplots(1, len(panels), sharey=True), panels, strict=True):
             handles = _panel(figure, axes, case, what, found, proof)
-            axes.legend(handles=handles, loc="upper right", fontsize=7)
+            axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.12), frameon=False, fontsize=7)
             label_axes(axes, PLANE, ())
             axes.set(title=f"{case}: {what}", xlim=(0, 0.34), ylim=(0, HIGHEST))
         (DOCS / name).write_bytes(png(figure))
@@ -85,16 +86,33 @@ def _panel(
     handles = [draw_boundary(axes, chart.boundary, UNIT, f"FVI >= 1, {case}")]
     if what == "contours":
         draw_contours(figure, axes, chart.map, "FVI", UNIT, 1.0)
-    if what == "between":
-        for ring in found["nine angles"].boundary:
-            axes.fill(*ring.T, color=BETWEEN, zorder=0)
-        for ring in chart.boundary:
-            axes.fill(*ring.T, color="white", zorder=0)
-        handles.append(draw_boundary(axes, found["nine angles"].boundary, UNIT, "at nine angles", "#8a5a44"))
-        handles.append(axes.fill([], [], color=BETWEEN, label=">= 1 at nine, < 1 between")[0])
     if proof is not None and what == "contours":
         handles.append(draw_cells(axes, proof.cells(PLANE), UNIT, "proved"))
     return handles
+
+
+def _write_between(found: dict[str, LevelSet], pose: np.ndarray) -> None:
+    """The set that nine angles miss, near its worst pose, and the FVI of that pose over the angle."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(8.4, 3.6), layout="constrained")
+        left, right = figure.subplots(1, 2, width_ratios=(1, 1.6))
+        for ring in found["nine angles"].boundary:
+            left.fill(*ring.T, color=BETWEEN, label=">= 1 at nine angles, < 1 between")
+        for ring in found["every angle"].boundary:
+            left.fill(*ring.T, color="#cfe3ea", label=">= 1 at every angle")
+        left.plot(*pose[1:3], "o", color="k", markersize=4, label="lowest of the set")
+        left.set(title="near the worst pose", xlim=(pose[1] - 0.02, 0.32), ylim=(pose[2] - 0.03, pose[2] + 0.06))
+        label_axes(left, PLANE, ())
+        left.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), frameon=False, fontsize=7)
+        angles = np.linspace(-math.pi / 2, math.pi / 2, 721)
+        for at, style in ((angles, "-"), (np.array(NINE), "o")):
+            poses = np.column_stack([np.tile(pose[:3], (len(at), 1)), at])
+            label = "every angle" if style == "-" else "nine angles"
+            right.plot(np.degrees(at), ROBOT.fvi(poses), style, color="#0b6e8e", label=label)
+        right.axhline(1.0, color="#d1495b", linewidth=1.0)
+        right.set(title=f"at y = {pose[1]:.4f} m, z = {pose[2]:.4f} m", xlabel="theta [deg]", ylabel="FVI")
+        right.legend(frameon=False)
+        (DOCS / "map_between_angles.png").write_bytes(png(figure))
 
 
 def _table(found: dict[str, LevelSet]) -> list[str]:
@@ -161,8 +179,7 @@ def sampled_radius(margin: str, bound: float) -> float:
     """Radius of the largest disc about the axis in the map of Heli4's prototype over x, y."""
     region = Cylinder(radius=0.6, z=(-0.8, -0.6), theta=(-math.pi, math.pi))
     chart = map_of(index_of(Heli4(), margin), Section(region, ("x", "y")), Heli4.pose_names, (129, 129))
-    across, up = np.meshgrid(chart.first, chart.second)
-    return float(np.hypot(across, up)[~(chart.values >= bound)].min(initial=region.radius))
+    return min(float(np.hypot(*ring.T).min()) for ring in boundary(chart, bound))
 
 
 if __name__ == "__main__":

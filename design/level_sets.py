@@ -113,7 +113,8 @@ def integrals(chart: Map, bound: float | None) -> Integrals:
     if bound is not None:
         triangles = _clipped(triangles, _GOOD, -bound if chart.smaller_is_better else bound)
     triangles = _clipped(triangles, _INSET, 0.0)
-    areas = 0.5 * np.abs(np.linalg.det(triangles[:, 1:, :2] - triangles[:, :1, :2]))
+    (ax, ay), (bx, by) = (np.moveaxis(triangles[:, k, :2] - triangles[:, 0, :2], -1, 0) for k in (1, 2))
+    areas = 0.5 * np.abs(ax * by - ay * bx)
     total = float(areas.sum())
     if total == 0.0:
         return Integrals(0.0, math.nan, math.nan)
