@@ -78,7 +78,7 @@ def map_request(
     if at_least is not None and not math.isfinite(at_least):
         raise InvalidOption("--at-least", at_least, "a finite number")
     region = _region(study, robot, over)
-    values = dict(_assignment("--at", given, robot, ",") for given in at)
+    values = _assignments("--at", at, robot.pose_names, angles_of(robot), ",")
     free = [n for n in robot.pose_names if region.is_free(n) and n not in values]
     axes = tuple(part.strip() for part in section.split(",")) if section else tuple(free[:2])
     if len(axes) != 2:
@@ -98,7 +98,7 @@ def _region(study: Study, robot: Mechanism, over: Sequence[str]) -> Region:
     """The study's region with other bounds where they are given."""
     region = setup.region_of(study)
     known = (*robot.pose_names, "radius") if isinstance(region, Cylinder) else robot.pose_names
-    changed = dict(_assignment("--over", given, robot, ":", known) for given in over)
+    changed = _assignments("--over", over, known, angles_of(robot), ":")
     try:
         if not isinstance(region, Cylinder):
             return Box(**{**region.intervals, **{name: _pair(name, pair) for name, pair in changed.items()}})
@@ -117,23 +117,30 @@ def _pair(name: str, values: tuple[float, ...]) -> tuple[float, float]:
     return values[0], values[1]
 
 
-def _assignment(
-    option: str, given: str, robot: Mechanism, separator: str, known: Sequence[str] | None = None
-) -> tuple[str, tuple[float, ...]]:
-    """A name and its values in SI, from "name=1,2" with the separator between the values."""
-    known = known or robot.pose_names
-    key, equals, text = given.partition("=")
-    name, suffix = key.strip(), ""
-    if name not in known:
-        name, _, suffix = name.rpartition("_")
-    right_unit = "deg" if name in angles_of(robot) else "mm"
-    if not equals or name not in known or suffix not in ("", right_unit):
-        names = ", ".join(f"{n}[_{'deg' if n in angles_of(robot) else 'mm'}]" for n in known)
-        raise InvalidOption(option, given, f"name=value with a name of {names}")
-    try:
-        values = tuple(float(part) for part in text.split(separator))
-    except ValueError:
-        raise InvalidOption(option, given, f"numbers with '{separator}' between them") from None
-    if not all(math.isfinite(v) for v in values):
-        raise InvalidOption(option, given, "finite numbers")
-    return name, tuple(v * _FACTORS.get(suffix, 1.0) for v in values)
+def _assignments(
+    option: str, given: Sequence[str], known: Sequence[str], angles: Sequence[str], separator: str
+) -> dict[str, tuple[float, ...]]:
+    """Values in SI by name, from texts like "name_deg=1,2" with the separator between the values."""
+    found: dict[str, tuple[float, ...]] = {}
+    for text in given:
+        key, equals, right = text.partition("=")
+        name, suffix = key.strip(), ""
+        if name not in known:
+            name, _, suffix = name.rpartition("_")
+        if not equals or name not in known or suffix not in ("", _suffix(name, angles)):
+            names = ", ".join(f"{n}[_{_suffix(n, angles)}]" for n in known)
+            raise InvalidOption(option, text, f"name=value with a name of {names}")
+        if name in found:
+            raise InvalidOption(option, f"{name} twice", "each name once")
+        try:
+            values = tuple(float(part) for part in right.split(separator))
+        except ValueError:
+            raise InvalidOption(option, text, f"numbers with '{separator}' between them") from None
+        if not all(math.isfinite(v) for v in values):
+            raise InvalidOption(option, text, "finite numbers")
+        found[name] = tuple(v * _FACTORS.get(suffix, 1.0) for v in values)
+    return found
+
+
+def _suffix(name: str, angles: Sequence[str]) -> str:
+    return "deg" if name in angles else "mm"

@@ -89,9 +89,11 @@ def run_map(request: MapRequest, tolerance: float, certify: bool, progress: Call
     """Sample, and prove where asked.
 
     Raises:
-        InvalidOption: the region has no family of which something could be proved.
+        InvalidOption: a tolerance not above 0, or no family of regions of which something could be proved.
         NotConverged: see `level_set`.
     """
+    if not (np.isfinite(tolerance) and tolerance > 0.0):
+        raise InvalidOption("--tolerance", tolerance, "a finite number > 0")
     prove = _proof(request) if certify else None
     progress(f"map of {request.index.name}")
     found = level_set(request.index, request.section, request.robot.pose_names, request.bound, tolerance)

@@ -111,6 +111,8 @@ def _write_between(found: dict[str, LevelSet], pose: np.ndarray) -> None:
             right.plot(np.degrees(at), ROBOT.fvi(poses), style, color="#0b6e8e", label=label)
         right.axhline(1.0, color="#d1495b", linewidth=1.0)
         right.set(title=f"at y = {pose[1]:.4f} m, z = {pose[2]:.4f} m", xlabel="theta [deg]", ylabel="FVI")
+        dip = math.degrees(pose[3])
+        right.set(xlim=(dip - 30.0, dip + 30.0), ylim=(0.995, 1.025))
         right.legend(frameon=False)
         (DOCS / "map_between_angles.png").write_bytes(png(figure))
 
