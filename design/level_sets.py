@@ -41,12 +41,13 @@ class Integrals:
     mean: float
     deviation: float
 
-    def moved(self, other: Integrals, whole: float, level: float) -> float:
-        """The largest change of a figure: the area's over the whole plane's, the others' over the level."""
-        changes = [abs(self.area - other.area) / whole]
-        if not math.isnan(self.mean) and not math.isnan(other.mean):
-            changes += [abs(self.mean - other.mean) / level, abs(self.deviation - other.deviation) / level]
-        return max(changes)
+    def moved(self, other: Integrals, whole: float) -> float:
+        """The largest change of a figure: the area's over the whole plane's, the others' over the larger of both."""
+        if math.isnan(self.mean) or math.isnan(other.mean):
+            return 0.0 if self.area == other.area else math.inf  # both empty, or one of them
+        level = max(abs(self.mean), self.deviation) or 1.0
+        changes = (abs(self.mean - other.mean), abs(self.deviation - other.deviation))
+        return max(abs(self.area - other.area) / whole, *(change / level for change in changes))
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,7 @@ def level_set(
         section: the plane.
         names: the robot's `pose_names`.
         bound: the index is to be at least this (at most, where smaller is better); None: in reach is enough.
-        tolerance: the area may move by this part of the plane's, mean and deviation by this part of the mean.
+        tolerance: the area may move by this part of the plane's, mean and deviation by this part of the larger one.
 
     Raises:
         InvalidRegion, InvalidSection: see `Section.check`.
@@ -99,7 +100,7 @@ def level_set(
         chart = map_of(index, section, names, (count, count))
         now = integrals(chart, bound)
         if before is not None:
-            moved = now.moved(before, whole, abs(now.mean) or 1.0)
+            moved = now.moved(before, whole)
             if moved <= tolerance:
                 return LevelSet(chart, bound, now, before)
         before, count = now, 2 * count - 1
@@ -130,6 +131,8 @@ def boundary(chart: Map, bound: float | None) -> list[Array]:
     """Closed polylines (k, 2) around the part of the plane where the index is at least the bound."""
     good = chart.goodness
     spare = np.where(np.isnan(good), np.nan, 1.0)
+    if np.isnan(good).all():
+        return []
     if bound is not None:
         spare = good + bound if chart.smaller_is_better else good - bound
     if np.isfinite(chart.inset).all():

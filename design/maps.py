@@ -33,7 +33,8 @@ class Map:
         index: its name.
         smaller_is_better: as in `Index`.
         first, second: (a,), (b,) values of the two axes [m or rad].
-        values: (b, a) the worst at each node, NaN where some pose behind it is out of reach; also beyond a curved
+        values: (b, a) the worst at each node, NaN where some pose behind it is out of reach (or, for the condition
+            number, singular); also beyond a curved
             boundary, where it continues the map.
         poses: (b, a, n) where that is.
         inset: (b, a) how far the node is inside a curved boundary of the region, negative beyond it [m]; inf: none.
@@ -89,10 +90,11 @@ def worst_behind(index: Index, section: Section, names: tuple[str, ...], points:
     each = REST.get(rest, 3)
     unit = np.array(list(product(np.linspace(0.0, 1.0, each), repeat=rest)))
     good, poses = np.empty(len(points)), np.empty((len(points), len(names)))
-    step = max(1, _CHUNK // len(unit))
+    listed = section.listed()
+    step = max(1, _CHUNK // (len(unit) * len(listed)))
     for first in range(0, len(points), step):
         part = slice(first, first + step)
-        found = [_worst(index, section, names, points[part], listed, unit) for listed in section.listed()]
+        found = [_worst(index, section, names, points[part], one, unit) for one in listed]
         values, where = (np.stack(column) for column in zip(*found, strict=True))
         lowest, rows = values.argmin(axis=0), np.arange(values.shape[1])
         good[part], poses[part] = values[lowest, rows], where[lowest, rows]

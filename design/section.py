@@ -47,6 +47,11 @@ class Section:
                 raise InvalidSection("axes", f"{name}, which the region fixes at {value:g}", "coordinates that vary")
         for name, values in self.at.items():
             self._check_values(name, values, names)
+        for one in self.listed():
+            if self.region.inset({name: np.asarray(value) for name, value in one.items()}) < 0.0:
+                raise InvalidSection(
+                    "at", ", ".join(f"{n} = {v:g}" for n, v in one.items()), f"a pose in {self.region}"
+                )
 
     def _check_values(self, name: str, values: Sequence[float], names: Sequence[str]) -> None:
         if name not in names or name in self.axes:

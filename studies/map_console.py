@@ -21,11 +21,11 @@ def print_map(outcome: MapOutcome, files: list[Path], as_json: bool) -> None:
     request, moved, worst = outcome.request, figures["moved"], figures["worst"]
     rows = [
         (f"area [{unit}]", f"{figures['area']:.6g}", f"{moved['area']:.2g}", ""),
-        ("mean over it", f"{figures['mean']:.6g}", f"{moved['mean']:.2g}", ""),
-        ("standard deviation over it", f"{figures['deviation']:.6g}", f"{moved['deviation']:.2g}", ""),
+        ("mean over it", _number(figures["mean"], 6), _number(moved["mean"], 2), ""),
+        ("standard deviation over it", _number(figures["deviation"], 6), _number(moved["deviation"], 2), ""),
         (
             "worst in the plane",
-            f"{worst:.6g}" if math.isfinite(worst) else "out of reach",
+            f"{worst:.6g}" if math.isfinite(worst) else "out of reach or singular",
             "",
             shown_pose(outcome.found.map.lowest[1]),
         ),
@@ -48,3 +48,8 @@ def print_map(outcome: MapOutcome, files: list[Path], as_json: bool) -> None:
         ]
         print_table(f"Proved: {proof.margin} >= {proof.at_least:g}", ("figure", "value"), proved)
     print_files(files)
+
+
+def _number(value: float, digits: int) -> str:
+    """Over no area there is none."""
+    return "none" if math.isnan(value) else f"{value:.{digits}g}"

@@ -198,6 +198,14 @@ def test_no_part_above_the_bound_has_no_mean() -> None:
     assert boundary(chart, 3.0) == []
 
 
+def test_a_plane_out_of_reach_is_empty_and_so_is_its_boundary() -> None:
+    beyond = Cylinder(radius=0.5, z=(2.0, 3.0), theta=(0.0, 1.0))
+    found = level_set(index_of(Heli4(), "fvi"), Section(beyond, ("x", "y")), NAMES, None)
+    assert found.figures.area == 0.0
+    assert found.boundary == []
+    assert found.map.lowest[0] == -np.inf
+
+
 def test_figures_that_do_not_stand_still_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("design.level_sets.FINEST", 129)
     noise = np.random.default_rng(0)
@@ -215,6 +223,7 @@ def test_figures_that_do_not_stand_still_are_refused(monkeypatch: pytest.MonkeyP
         (Section(YZ, ("y", "z"), {"w": (0.1,)}), "one of x, theta"),
         (Section(YZ, ("y", "z"), {"theta": (3.0,)}), "in the region"),
         (Section(YZ, ("y", "z"), {"theta": ()}), "at least one"),
+        (Section(HELI, ("z", "theta"), {"x": (0.4,), "y": (0.0, 0.4)}), "a pose in Cylinder"),
     ],
 )
 def test_a_plane_that_the_region_does_not_have_is_refused(section: Section, words: str) -> None:
