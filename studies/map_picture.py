@@ -146,5 +146,7 @@ def _title(outcome: MapOutcome) -> str:
     if worst:
         shown.append(f"worst over {', '.join(worst)}")
     first = f"{type(request.robot).__name__}, {request.index.name}" + (f": {'; '.join(shown)}" if shown else "")
+    if figures.area == 0.0:
+        return f"{first}\nno pose keeps the bound"
     second = f"area {figures.area:.4g} {outcome.area_unit}, mean {figures.mean:.4g}, deviation {figures.deviation:.3g}"
     return f"{first}\n{second}"
