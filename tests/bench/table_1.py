@@ -45,10 +45,10 @@ def limit_of_y(robot: Redundant3T1R) -> float:
     return abs(robot.geometry.outer_rail_y) - robot.geometry.platform_length / 2
 
 
-def conventions(robot: Redundant3T1R) -> Iterator[Counted]:
-    """Every step, axis, rule and case."""
+def conventions(robot: Redundant3T1R, steps: tuple[float, ...] = STEPS) -> Iterator[Counted]:
+    """Every step [m], axis, rule and case."""
     limit = limit_of_y(robot)
-    for step in STEPS:
+    for step in steps:
         for axis in AXES:
             count = int(limit / step + 1e-9)
             y = step * np.arange(count + 1) if axis == AXES[0] else np.linspace(0.0, limit, count + 2)

@@ -28,6 +28,7 @@ from design.level_sets import boundary, integrals
 from design.region import Region
 from kinematics import Heli4, Peppermill, Redundant3T1R
 from kinematics.errors import InvalidValue
+from tests.bench.table_1 import AXES, conventions
 
 Array = np.ndarray
 PI = math.pi
@@ -137,6 +138,12 @@ def test_table_1_converged_and_what_nine_angles_leave_out() -> None:
     assert abs(4 * listed.figures.area - 0.69) < 0.005
     assert 0.001 < 4 * (listed.figures.area - every.figures.area) < 0.002
     assert np.nanmax(every.map.values - map_of(index, cases[1], NAMES, every.map.values.shape).values) <= 0.0
+
+
+def test_counting_nodes_at_multiples_of_10_mm_gives_every_printed_digit_of_table_1() -> None:
+    counted = [one for one in conventions(Redundant3T1R(), (0.010,)) if (one.axis, one.rule) == (AXES[0], "nodes")]
+    assert [one.case for one in counted] == ["theta = 0", "nine angles"]
+    assert all(one.matches for one in counted)
 
 
 @pytest.mark.parametrize("axes", [("x", "y"), ("y", "z"), ("z", "theta"), ("theta", "x")])
