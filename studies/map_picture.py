@@ -99,6 +99,7 @@ def label_axes(axes: Axes, names: Sequence[str], angles: Sequence[str]) -> None:
     """Names and units; lengths on both axes in the same scale."""
     first, second = (f"{name} [{'deg' if name in angles else 'm'}]" for name in names)
     axes.set(xlabel=first, ylabel=second)
+    axes.locator_params(axis="x", nbins=5)
     if not set(names) & set(angles):
         axes.set_aspect("equal")
 
