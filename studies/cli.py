@@ -92,19 +92,19 @@ def map_(
     study: StudyArgument,
     margin: Annotated[
         str | None,
-        typer.Option("--margin", help="Any margin of the mechanism, v_w, f_w or condition_number. [default: fvi]"),
+        typer.Option("--margin", help="Any margin of the mechanism, v_w, f_w or condition_number; fvi if not given."),
     ] = None,
     section: Annotated[
         str | None,
-        typer.Option("--section", metavar="A,B", help="The plane, such as y,z. [default: the first two that vary]"),
+        typer.Option("--section", metavar="A,B", help="The plane, such as y,z; the first two that vary if not given."),
     ] = None,
     at: Annotated[
         list[str] | None,
         typer.Option(
             "--at",
             metavar="NAME=VALUE[,...]",
-            help="Fix another coordinate, such as theta_deg=0; of several values the worst counts. "
-            "[default: worst over its whole interval]",
+            help="Fix another coordinate, such as theta_deg=0; of several values the worst counts, "
+            "as it does over the whole interval if not given.",
         ),
     ] = None,
     over: Annotated[
@@ -121,7 +121,7 @@ def map_(
             "--at-least",
             metavar="C",
             help="Bound of the area and the boundary; for condition_number it is an upper one. "
-            "[default: the study's requirement; 1 for fvi; else all in reach]",
+            "If not given: the study's requirement; 1 for fvi; else all in reach.",
         ),
     ] = None,
     certified: Annotated[
