@@ -118,6 +118,13 @@ def certify(
     else:
         lower = LowerBounds(robot, region, margin, at_least, fvi_bounds, length)
         found = search(lower, region, names, failing, most_boxes, lambda done: progress(f"{what}: {done}"))
+    return answer(robot, region, margin, at_least, fvi_bounds, length, found)
+
+
+def answer(
+    robot: Mechanism, region: Region, margin: str, at_least: float, bounds: FviBounds, length: float, found: Search
+) -> Certificate:
+    """What a search over a region came to, with all that it was asked."""
     refuted, proved = found.counterexample is not None, not len(found.left)
     return Certificate(
         mechanism=type(robot).__name__,
@@ -125,7 +132,7 @@ def certify(
         region=region,
         margin=margin,
         at_least=at_least,
-        bounds=fvi_bounds,
+        bounds=bounds,
         characteristic_length=length,
         version=version("linkwright"),
         status="refuted" if refuted else "proved" if proved else "undecided",

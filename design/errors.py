@@ -15,6 +15,24 @@ class InvalidRegion(LinkwrightError):
         super().__init__(f"region, {key}: found {found}; expected {expected}")
 
 
+class InvalidSection(LinkwrightError):
+    """A plane that the region does not have."""
+
+    def __init__(self, key: str, found: object, expected: str) -> None:
+        self.key, self.found, self.expected = key, found, expected
+        super().__init__(f"section, {key}: found {found}; expected {expected}")
+
+
+class NotConverged(LinkwrightError):
+    """A figure that still moves by more than was asked on the finest grid."""
+
+    exit_status = 1
+
+    def __init__(self, what: str, moved: float, tolerance: float, hint: str) -> None:
+        self.what, self.moved, self.tolerance = what, moved, tolerance
+        super().__init__(f"{what}: still moves by {moved:.3g} on the finest grid; expected {tolerance:.3g}; {hint}")
+
+
 class SynthesisFailed(LinkwrightError):
     """The optimisation has no answer to stand by."""
 

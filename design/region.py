@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from numbers import Real
 
@@ -58,6 +58,14 @@ class Region(ABC):
         """(..., n) -> (...,) whether each pose is inside, or outside by no more than the slack [m or rad]."""
 
     @abstractmethod
+    def narrowed(self, given: Mapping[str, Array]) -> dict[str, tuple[Array | float, Array | float]]:
+        """Bounds of each coordinate that is not given, where those that are have these values (...,)."""
+
+    @abstractmethod
+    def inset(self, given: Mapping[str, Array]) -> Array:
+        """(...,) how far the given coordinates (...,) are inside a curved boundary [m]; infinity without one."""
+
+    @abstractmethod
     def outline(self) -> list[Array]:
         """Edges of the region's x, y, z part as polylines (k, 3), for drawing."""
 
@@ -73,6 +81,34 @@ class Region(ABC):
         for name in self.intervals:
             if name not in names:
                 raise InvalidRegion(name, "a coordinate", f"one of {', '.join(names)}")
+
+    def complete(self, given: Mapping[str, Array], unit: Array, names: Sequence[str]) -> Array:
+        """Poses from some coordinates and a point of the unit cube for the others.
+
+        Args:
+            given: values (...,) by name.
+            unit: (..., k) in [0, 1], one column for each other coordinate that is not fixed, in the order of `names`.
+
+        Returns:
+            (..., n); affine in the others, so not uniform over their volume.
+        """
+        pose = np.empty((*unit.shape[:-1], len(names)))
+        bounds, column = self.narrowed(given), 0
+        for i, name in enumerate(names):
+            if name in given:
+                pose[..., i] = given[name]
+                continue
+            low, high = bounds[name]
+            pose[..., i] = low
+            if self.is_free(name):
+                pose[..., i] += (high - low) * unit[..., column]
+                column += 1
+        return pose
+
+    def is_free(self, name: str) -> bool:
+        """Whether a coordinate is not fixed."""
+        low, high = self.intervals[name]
+        return low < high
 
     def grid(self, names: Sequence[str], counts: Sequence[int]) -> Array:
         """(prod counts, n) poses on a regular grid of the unit cube, its faces included."""
@@ -136,6 +172,14 @@ class Box(Region):
         low, high = np.array([self._intervals[name] for name in names]).T
         return ((poses >= low - slack) & (poses <= high + slack)).all(axis=-1)
 
+    def narrowed(self, given: Mapping[str, Array]) -> dict[str, tuple[Array | float, Array | float]]:
+        """The others' own bounds."""
+        return {name: interval for name, interval in self._intervals.items() if name not in given}
+
+    def inset(self, given: Mapping[str, Array]) -> Array:
+        """No boundary is curved."""
+        return np.full(np.broadcast_shapes(*(np.shape(v) for v in given.values())), np.inf)
+
     def outline(self) -> list[Array]:
         """The box's edges."""
         sides = [self._intervals.get(name, (0.0, 0.0)) for name in ("x", "y", "z")]
@@ -195,6 +239,27 @@ class Cylinder(Region):
         others = [name for name in names if name not in ("x", "y")]
         rest = self._rest.contains(poses[..., [names.index(name) for name in others]], others, slack)
         return rest & (np.hypot(x, y) <= self.radius + slack)
+
+    def complete(self, given: Mapping[str, Array], unit: Array, names: Sequence[str]) -> Array:
+        """Where neither x nor y is given, the first two columns are polar coordinates in the disc."""
+        if "x" not in given and "y" not in given:
+            radius, azimuth = self.radius * np.sqrt(unit[..., 0]), 2.0 * math.pi * unit[..., 1]
+            given = {**given, "x": radius * np.cos(azimuth), "y": radius * np.sin(azimuth)}
+            unit = unit[..., 2:]
+        return super().complete(given, unit, names)
+
+    def narrowed(self, given: Mapping[str, Array]) -> dict[str, tuple[Array | float, Array | float]]:
+        """x or y in the chord that the other leaves; one of them has to be given."""
+        bounds = self._rest.narrowed(given)
+        for name, other in (("x", "y"), ("y", "x")):
+            if name not in given:
+                half = np.sqrt(np.maximum(self.radius**2 - given[other] ** 2, 0.0))
+                bounds[name] = (-half, half)
+        return bounds
+
+    def inset(self, given: Mapping[str, Array]) -> Array:
+        """From the circle, where x and y are given or one of them is."""
+        return self.radius - np.hypot(given.get("x", 0.0), given.get("y", 0.0))
 
     def outline(self) -> list[Array]:
         """The circles at both ends."""

@@ -81,7 +81,7 @@ def worst_poses(
         pose = region.from_unit(np.empty((1, 0)), names)
         return WorstPoses(value(np.empty((1, 0))), pose, 1)
     grid = sweep(value, unit_grid(counts), keep=4 * descents)
-    unit, values = _descend(value, grid.at, 1.0 / (np.array(counts) - 1.0))
+    unit, values = descend(value, grid.at, 1.0 / (np.array(counts) - 1.0))
     order = np.argsort(values, kind="stable")
     unit, values = unit[order], values[order]
     poses = region.from_unit(unit, names)
@@ -89,7 +89,7 @@ def worst_poses(
     return WorstPoses(values[distinct], poses[distinct], grid.poses)
 
 
-def _descend(value, unit: Array, step: Array, rounds: int = 40) -> tuple[Array, Array]:  # type: ignore[no-untyped-def]
+def descend(value, unit: Array, step: Array, rounds: int = 40) -> tuple[Array, Array]:  # type: ignore[no-untyped-def]
     """Compass search of all points at once inside the unit cube; a point without a better neighbour halves its step."""
     k = unit.shape[1]
     moves = np.concatenate([np.eye(k), -np.eye(k)])

@@ -96,6 +96,74 @@ def optimise(study: StudyArgument, json: JsonOption = False) -> None:
     console.print_outcome(_outcome(asked, None), [], json)
 
 
+@app.command("map")
+def map_(
+    study: StudyArgument,
+    margin: Annotated[
+        str | None,
+        typer.Option("--margin", help="Any margin of the mechanism, v_w, f_w or condition_number; fvi if not given."),
+    ] = None,
+    section: Annotated[
+        str | None,
+        typer.Option("--section", metavar="A,B", help="The plane, such as y,z; the first two that vary if not given."),
+    ] = None,
+    at: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--at",
+            metavar="NAME=VALUE[,...]",
+            help="Fix another coordinate, such as theta_deg=0; of several values the worst counts, "
+            "as it does over the whole interval if not given.",
+        ),
+    ] = None,
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--over",
+            metavar="NAME=LOW:HIGH",
+            help="Other bounds than the study's region has, such as z_mm=-800:800, or radius=0.7 of a cylinder.",
+        ),
+    ] = None,
+    at_least: Annotated[
+        float | None,
+        typer.Option(
+            "--at-least",
+            metavar="C",
+            help="Bound of the area and the boundary; for condition_number it is an upper one. "
+            "If not given: the study's requirement; 1 for fvi; else all in reach.",
+        ),
+    ] = None,
+    certified: Annotated[
+        bool, typer.Option("--certified", help="Prove too: the largest cylinder's radius, or the plane's cells.")
+    ] = False,
+    tolerance: Annotated[
+        float, typer.Option("--tolerance", help="By what part the figures may still move when the grid is refined.")
+    ] = 1e-3,
+    out: OutOption = None,
+    json: JsonOption = False,
+    prototype: PrototypeOption = False,
+) -> None:
+    """Map an index over a plane of the workspace: area, mean, deviation, boundary, picture and numbers.
+
+    linkwright map heli4 --certified
+
+    linkwright map redundant_3t1r --over y=-0.3187:0.3187 --over z=-0.8:0.8 --at theta_deg=0
+    """
+    from studies import console
+    from studies.map_console import print_map
+    from studies.map_files import write_map
+    from studies.map_options import map_request
+    from studies.map_stage import run_map
+
+    asked = _load(study)
+    request = map_request(asked, _robot(study, asked, prototype), margin, section, at or (), over or (), at_least)
+    folder = out or Path("out") / asked.name
+    _require_writable(folder)
+    with console.progress() as tell:
+        outcome = run_map(request, tolerance, certified, tell)
+    print_map(outcome, write_map(outcome, folder), json)
+
+
 @app.command()
 def certify(
     study: StudyArgument,

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass
-from itertools import product
 from typing import Any
 
 import matplotlib as mpl
@@ -14,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from design import Region
+from design import Map, Region, Section, index_of, map_of
 from design.nlp import Problem
 from kinematics import Mechanism
 
@@ -27,8 +25,7 @@ _LINES = {
     "tool": (_COLOURS[2], 2.0),
 }
 _DASHES = ("-", "--")  # symmetric joints move alike: every second one leaves gaps for the other
-_OTHERS = 289  # about how many poses of the other coordinates stand behind a point of a map
-_STYLE: Any = {
+STYLE: Any = {
     "font.size": 9,
     "axes.titlesize": 10,
     "axes.spines.top": False,
@@ -37,22 +34,6 @@ _STYLE: Any = {
     "grid.alpha": 0.25,
     "grid.linewidth": 0.6,
 }
-
-
-@dataclass(frozen=True)
-class Section:
-    """Worst value of a margin over all other coordinates, on a grid of two.
-
-    Attributes:
-        names: the two coordinates.
-        first, second: (a,), (b,) their values.
-        worst: (b, a), NaN outside the region.
-    """
-
-    names: tuple[str, str]
-    first: Array
-    second: Array
-    worst: Array
 
 
 def can_be_mapped(region: Region, names: Sequence[str]) -> bool:
@@ -64,29 +45,16 @@ def _free(region: Region, names: Sequence[str]) -> list[str]:
     return [n for n in names if region.intervals[n][0] < region.intervals[n][1]]
 
 
-def section_of(problem: Problem, robot: Mechanism, region: Region, margin: str, size: int = 81) -> Section:
+def section_of(problem: Problem, robot: Mechanism, region: Region, margin: str, size: int = 61) -> Map:
     """The region's first two free coordinates as a plane, the worst over the others."""
-    names = robot.pose_names
-    plane, rest = (free := _free(region, names))[:2], free[2:]
-    each = max(3, round(_OTHERS ** (1 / max(1, len(rest)))))
-    axes = {n: np.linspace(*region.intervals[n], size if n in plane else each) for n in free}
-    others = np.array(list(product(*(axes[n] for n in rest)))).reshape(-1, len(rest))
-    first, second = axes[plane[0]], axes[plane[1]]
-    poses = np.empty((size, size, len(others), len(names)))
-    for k, name in enumerate(names):
-        poses[..., k] = region.intervals[name][0]
-    poses[..., names.index(plane[0])] = first[None, :, None]
-    poses[..., names.index(plane[1])] = second[:, None, None]
-    poses[..., [names.index(n) for n in rest]] = others
-    values = robot.margin(margin, poses, problem.fvi_bounds, problem.characteristic_length)
-    worst = np.where(np.isnan(values), -np.inf, values).min(axis=-1)
-    worst[~region.contains(poses[:, :, 0], names)] = np.nan
-    return Section((plane[0], plane[1]), first, second, np.where(np.isinf(worst), np.nan, worst))
+    first, second = _free(region, robot.pose_names)[:2]
+    index = index_of(robot, margin, problem.fvi_bounds, problem.characteristic_length)
+    return map_of(index, Section(region, (first, second)), robot.pose_names, (size, size))
 
 
 def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
     """Each robot in 3-D at its home pose, in the same scale, with the workspace's edge."""
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.6 * len(robots), 4.2))
         drawn = {label: robot.polylines(np.array(robot.home)) for label, robot in robots.items()}
         box = _common_box([line for lines in drawn.values() for line in lines.values()] + region.outline())
@@ -103,7 +71,7 @@ def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
             axes.set_aspect("equal")
             axes.set_box_aspect(None, zoom=1.1)
             axes.view_init(elev=18, azim=-60)
-        return _png(figure)
+        return png(figure)
 
 
 def _common_box(lines: list[Array]) -> list[tuple[float, float]]:
@@ -112,35 +80,30 @@ def _common_box(lines: list[Array]) -> list[tuple[float, float]]:
     return list(zip(points.min(axis=0).tolist(), points.max(axis=0).tolist(), strict=True))
 
 
-def map_picture(sections: dict[str, Section], title: str, bound: float | None) -> bytes:
+def map_picture(sections: dict[str, Map], title: str, bound: float | None) -> bytes:
     """Worst value over the plane, one panel a robot, same colours; the bound as a red line where it is crossed."""
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(4.9 * len(sections), 4.2), layout="constrained")
-        everything = np.concatenate([s.worst[np.isfinite(s.worst)] for s in sections.values()])
+        shown = {label: np.where(chart.inset >= 0.0, chart.values, np.nan) for label, chart in sections.items()}
+        everything = np.concatenate([values[np.isfinite(values)] for values in shown.values()])
         panels: list[Axes] = list(np.atleast_1d(figure.subplots(1, len(sections), sharey=True)))
-        for axes, (label, section) in zip(panels, sections.items(), strict=True):
-            mesh = axes.pcolormesh(
-                section.first,
-                section.second,
-                section.worst,
-                cmap="viridis",
-                vmin=everything.min(),
-                vmax=everything.max(),
-            )
-            low = float(np.nanmin(section.worst))
-            if bound is not None and low < bound < np.nanmax(section.worst):
-                axes.contour(section.first, section.second, section.worst, levels=[bound], colors="red")
-            axes.set(title=f"{label}: least {low:.3f} on this grid", xlabel=_axis(section.names[0]))
+        for axes, (label, chart) in zip(panels, sections.items(), strict=True):
+            limits = {"vmin": everything.min(), "vmax": everything.max()}
+            mesh = axes.pcolormesh(chart.first, chart.second, shown[label], cmap="viridis", **limits)
+            low = float(np.nanmin(shown[label]))
+            if bound is not None and low < bound < np.nanmax(shown[label]):
+                axes.contour(chart.first, chart.second, shown[label], levels=[bound], colors="red")
+            axes.set(title=f"{label}: least {low:.3f} on this grid", xlabel=_axis(chart.section.axes[0]))
             axes.set_aspect("equal")
             axes.grid(False)
-        panels[0].set_ylabel(_axis(section.names[1]))
+        panels[0].set_ylabel(_axis(chart.section.axes[1]))
         figure.colorbar(mesh, ax=panels, label=title)
-        return _png(figure)
+        return png(figure)
 
 
 def path_picture(poses: Array, time: Array, names: Sequence[str]) -> bytes:
     """The tool's path from its start, and each pose coordinate over time."""
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.8, 3.2), layout="constrained")
         left, right = figure.subplots(1, 2)
         away = 1e3 * (poses - poses[0])
@@ -156,7 +119,7 @@ def path_picture(poses: Array, time: Array, names: Sequence[str]) -> bytes:
             right.plot(1e3 * time, factor * (poses[:, k] - poses[0, k]), color=_COLOURS[k], label=f"{name} [{unit}]")
         right.set(title="pose from the start", xlabel="time [ms]")
         right.legend(frameon=False)
-        return _png(figure)
+        return png(figure)
 
 
 def motion_picture(time: Array, rows: Sequence[tuple[str, Array, Array | None]], joints: Sequence[str]) -> bytes:
@@ -167,7 +130,7 @@ def motion_picture(time: Array, rows: Sequence[tuple[str, Array, Array | None]],
         rows: label, values (k, m), limits (m,) or None.
         joints: the joints' names.
     """
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.8, 2.3 * len(rows)), layout="constrained")
         panels: list[Axes] = list(np.atleast_1d(figure.subplots(len(rows), 1, sharex=True)))
         for axes, (label, values, limits) in zip(panels, rows, strict=True):
@@ -181,14 +144,15 @@ def motion_picture(time: Array, rows: Sequence[tuple[str, Array, Array | None]],
             *panels[0].get_legend_handles_labels(), loc="outside upper right", ncols=len(joints), frameon=False
         )
         panels[-1].set_xlabel("time [ms]")
-        return _png(figure)
+        return png(figure)
 
 
 def _axis(name: str) -> str:
     return f"{name} [{'m' if name in ('x', 'y', 'z') else 'rad'}]"
 
 
-def _png(figure: Figure) -> bytes:
+def png(figure: Figure) -> bytes:
+    """The figure, drawn; the same bytes for the same figure."""
     figure.set_dpi(130)
     buffer = io.BytesIO()
     FigureCanvasAgg(figure).print_png(buffer, metadata={"Software": None})

@@ -23,7 +23,7 @@ def test_help_loads_none_of_the_heavy_libraries() -> None:
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
     shown = linkwright("--help")
     assert shown.returncode == 0
-    for command in ("list", "run", "optimise", "certify", "trajectory", "report", "export", "check"):
+    for command in ("list", "run", "optimise", "map", "certify", "trajectory", "report", "export", "check"):
         assert command in shown.stdout
 
 
