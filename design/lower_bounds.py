@@ -65,7 +65,7 @@ class LowerBounds:
         self._with_gradient = program(claims.expressions, gradient, conditions)
         self._plain = program(claims.expressions)
         self._slopes = self._count * (1 + self.free.size)  # where the conditions start
-        self._size = claims.scaling.shape[0]
+        self._chosen, self._size = claims.chosen, claims.scaling.numel()
         self._matrix = _plain_program(robot, claims.matrix, numbers, fixed) if claims.matrix is not None else None
 
     def lowest(self, low: Array, high: Array) -> tuple[Array, Array]:
@@ -103,21 +103,11 @@ class LowerBounds:
         return self.free[spread.argmax(axis=1)]
 
     def _scaling(self, middle: Array) -> Array:
-        """(k, size^2) the matrices S, column by column: R^-1 of the QR factors, or the inverse of a square matrix."""
+        """(k, size) the numbers of the claims' scaling, column by column."""
         if self._matrix is None:
             return np.empty((len(middle), 0))
         (values,) = evaluate(self._matrix, middle)
-        size = np.abs(values).max(axis=(-2, -1), initial=0.0)
-        usable = np.isfinite(size) & (size > 1e-30) & (size < 1e30)  # NaN is neither
-        eye = np.eye(self._size)
-        result = np.broadcast_to(eye, (len(middle), self._size, self._size)).copy()
-        size = size[usable][:, None, None]
-        values = values[usable] / size
-        if values.shape[-2] != values.shape[-1]:
-            values = np.linalg.cholesky(np.swapaxes(values, -1, -2) @ values + 1e-14 * eye, upper=True)
-        regular = np.abs(np.linalg.det(values)) > 1e-200
-        result[np.flatnonzero(usable)[regular]] = np.linalg.inv(values[regular]) / size[regular]
-        return np.swapaxes(result, -1, -2).reshape(len(middle), self._size**2)
+        return np.swapaxes(self._chosen(values), -1, -2).reshape(len(middle), self._size)
 
 
 def _conditions(symbols: list[ca.SX], expressions: ca.SX) -> ca.SX:

@@ -16,7 +16,7 @@ OPERATIONS = {
     Op.DIV: lambda a, b: arb(a) / arb(b),
     Op.NEG: lambda a, _: -arb(a),
     Op.SQRT: lambda a, _: arb(a).sqrt(),
-    Op.SQ: lambda a, _: arb(a) ** 2,
+    Op.SQ: lambda a, _: arb(a) * arb(a),  # a power of a ball around 0 may be NaN
     Op.TWICE: lambda a, _: 2 * arb(a),
     Op.INV: lambda a, _: 1 / arb(a),
     Op.SIN: lambda a, _: arb(a).sin(),

@@ -34,7 +34,7 @@ class Auditor:
         self._fixed = [arb(v) for v in robot.geometry.vector()]
         self._numbers = [arb(v) for v in Numbers.values(c.at_least, c.bounds, c.characteristic_length)]
         self._count = claims.expressions.numel()
-        self._matrix = claims.matrix
+        self._matrix, self._chosen = claims.matrix, claims.chosen
         if claims.matrix is not None:
             self._at = ca.Function("matrix", [model.pose, model.geometry, numbers.vector], [claims.matrix])
 
@@ -86,8 +86,7 @@ class Auditor:
             self.certificate.at_least, self.certificate.bounds, self.certificate.characteristic_length
         )
         matrix = np.array(self._at(middle, self.robot.geometry.vector(), numbers))
-        right = np.linalg.inv(matrix if matrix.shape[0] == matrix.shape[1] else np.linalg.qr(matrix, mode="r"))
-        return [arb(float(v)) for v in right.T.ravel()]
+        return [arb(float(v)) for v in self._chosen(matrix[None])[0].T.ravel()]
 
 
 def _program(symbols: list[ca.SX], output: ca.SX) -> Program:
