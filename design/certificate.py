@@ -37,7 +37,7 @@ class Certificate:
     """A claim, the answer, and for a proof the boxes that anyone can check again.
 
     Attributes:
-        mechanism, digest: class name and SHA-256 of the geometry.
+        mechanism, digest, ranges: class name, SHA-256 of the geometry and of the joints' ranges.
         region, margin, at_least: the claim.
         bounds, characteristic_length: what the FVI is measured with; length in metres.
         version: of the program that made it.
@@ -50,6 +50,7 @@ class Certificate:
 
     mechanism: str
     digest: str
+    ranges: str
     region: Region
     margin: str
     at_least: float
@@ -90,33 +91,16 @@ def certify(
         InvalidRegion: the region does not speak of the robot's coordinates.
         InvalidValue: an unknown margin, a bound that is not finite, or no box allowed.
     """
-    names = robot.pose_names
-    region.check(names)
-    if not np.isfinite(at_least):
-        raise InvalidValue("at_least", at_least, "a finite number")
-    if most_boxes < 1:
-        raise InvalidValue("most_boxes", most_boxes, "at least 1")
-    if margin not in robot.margins:
-        raise InvalidValue(f"{type(robot).__name__} margin", margin, f"one of {', '.join(robot.margins)}")
+    _check(robot, region, margin, at_least, most_boxes)
     fvi_bounds = bounds or robot.fvi_bounds
     length = robot.characteristic_length if characteristic_length is None else float(characteristic_length)
     at_least = float(at_least)
-
-    def failing(poses: Array) -> Array | None:
-        inside = poses[region.contains(poses, names)]
-        return first_failing(robot, margin, inside, at_least, fvi_bounds, length)
-
-    counterexample = failing(_suspects(robot, region, margin, fvi_bounds, length, _SEED))
-    if counterexample is not None:
-        nothing = np.empty((0, 2, len(names)))
-        found = Search(np.empty(0, dtype=np.int8), 0, nothing, counterexample)
-    else:
-        lower = LowerBounds(robot, region, margin, at_least, fvi_bounds, length)
-        found = search(lower, region, names, failing, most_boxes)
+    found = _decide(robot, region, margin, at_least, fvi_bounds, length, most_boxes)
     refuted, proved = found.counterexample is not None, not len(found.left)
     return Certificate(
         mechanism=type(robot).__name__,
         digest=robot.geometry.digest,
+        ranges=robot.ranges.digest,
         region=region,
         margin=margin,
         at_least=at_least,
@@ -129,6 +113,33 @@ def certify(
         codes=found.codes if proved and not refuted else np.empty(0, dtype=np.int8),
         left=found.left,
     )
+
+
+def _check(robot: Mechanism, region: Region, margin: str, at_least: float, most_boxes: int) -> None:
+    region.check(robot.pose_names)
+    if not np.isfinite(at_least):
+        raise InvalidValue("at_least", at_least, "a finite number")
+    if most_boxes < 1:
+        raise InvalidValue("most_boxes", most_boxes, "at least 1")
+    if margin not in robot.margins:
+        raise InvalidValue(f"{type(robot).__name__} margin", margin, f"one of {', '.join(robot.margins)}")
+
+
+def _decide(
+    robot: Mechanism, region: Region, margin: str, at_least: float, bounds: FviBounds, length: float, most_boxes: int
+) -> Search:
+    """Look for a counterexample where the margin is lowest, then prove by boxes."""
+    names = robot.pose_names
+
+    def failing(poses: Array) -> Array | None:
+        inside = poses[region.contains(poses, names)]
+        return first_failing(robot, margin, inside, at_least, bounds, length)
+
+    counterexample = failing(_suspects(robot, region, margin, bounds, length, _SEED))
+    if counterexample is not None:
+        return Search(np.empty(0, dtype=np.int8), 0, np.empty((0, 2, len(names))), counterexample)
+    lower = LowerBounds(robot, region, margin, at_least, bounds, length)
+    return search(lower, region, names, failing, most_boxes)
 
 
 def _suspects(robot: Mechanism, region: Region, margin: str, bounds: FviBounds, length: float, about: int) -> Array:

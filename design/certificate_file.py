@@ -19,6 +19,7 @@ from kinematics.errors import LinkwrightError
 _PLAIN: dict[str, type] = {
     "mechanism": str,
     "digest": str,
+    "ranges": str,
     "margin": str,
     "at_least": float,
     "characteristic_length": float,

@@ -34,12 +34,13 @@ def replay(
         How many boxes were bounded again; 1 for the pose of a refutation.
 
     Raises:
-        OtherCertificate: another mechanism, geometry, version, region, margin or a lower bound.
+        OtherCertificate: another mechanism, geometry, ranges, version, region, margin or a lower bound.
         BrokenCertificate: its boxes do not cover the region or one is not proved, its pose does not refute, or it
             decides nothing.
     """
     _same("mechanism", certificate.mechanism, type(robot).__name__)
     _same("geometry", certificate.digest, robot.geometry.digest)
+    _same("joint ranges", certificate.ranges, robot.ranges.digest)
     _same("version", certificate.version, version("linkwright"))
     if region is not None:
         _same("region", repr(certificate.region), repr(region))

@@ -35,7 +35,7 @@ class JointRanges:
         Raises:
             InvalidValue: neither one pair nor one for each, or a pair not in rising order.
         """
-        given = np.array(self.joints, dtype=float)
+        given = _numbers(self.joints)
         if given.shape not in ((2,), (count, 2)) or not (given[..., 0] < given[..., 1]).all():
             wanted = f"lowest < highest, once or for each of {count} joints"
             raise InvalidValue(f"{type(self).__name__} joints", self.joints, wanted)
@@ -68,7 +68,7 @@ class RodRanges(JointRanges):
     def check(self, count: int) -> None:
         """As for `JointRanges`; and each passive angle must be in (0, pi]."""
         super().check(count)
-        given = np.array(self.passive, dtype=float)
+        given = _numbers(self.passive)
         if given.shape != (2,) or not ((given > 0.0) & (given <= math.pi)).all():
             wanted = "two angles in (0, pi] rad: drives' ends, platform's ends"
             raise InvalidValue(f"{type(self).__name__} passive", self.passive, wanted)
@@ -113,6 +113,15 @@ class PassiveJoint(NamedTuple):
             reach = ca.sin(allowed) * self.length
             return [reach - along, reach + along, allowed]
         return [along - ca.cos(allowed) * self.length, allowed]
+
+
+def _numbers(given: object) -> Array:
+    """An array of floats; of one NaN where any of it is not a number."""
+    try:
+        array = np.array(given)
+    except ValueError:  # ragged
+        return np.full(1, np.nan)
+    return array.astype(float) if array.dtype.kind in "iuf" else np.full(1, np.nan)
 
 
 def joint_travel(joints: ca.SX, limits: Array) -> ca.SX:

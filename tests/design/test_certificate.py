@@ -252,3 +252,43 @@ def test_equal_links_are_proved_up_to_where_they_fold_and_never_beyond() -> None
     for margin in ("reach", "J_q"):
         assert certify(robot, near, margin, at_least=1e-3).status == "proved"
         assert certify(robot, onto, margin, at_least=-1.0, most_boxes=3_000).status != "proved"
+
+
+@pytest.mark.parametrize(
+    ("robot", "region", "margin"),
+    [
+        (Heli4(), CYLINDER, "joint_travel"),
+        (Heli4(), CYLINDER, "passive_joint"),
+        (Redundant3T1R(), YZ, "clearance"),
+        (Redundant3T1R(), YZ, "joint_travel"),
+        (Redundant3T1R(), YZ, "passive_joint"),
+        (GoughStewart(), HEXAPOD, "joint_travel"),
+        (GoughStewart(), HEXAPOD, "passive_joint"),
+        (Peppermill(), SCREWS, "joint_travel"),
+        (Peppermill(), SCREWS, "passive_joint"),
+    ],
+)
+def test_room_is_proved_close_to_the_worst_found_and_refuted_just_above(
+    robot: Mechanism, region: Region, margin: str
+) -> None:
+    worst = worst_poses(robot, region, margin, about=20_000).value
+    assert worst > 0.0
+    assert certify(robot, region, margin, at_least=0.98 * worst).status == "proved"
+    assert certify(robot, region, margin, at_least=1.001 * worst).status == "refuted"
+
+
+def test_a_bound_beyond_the_whole_range_is_never_proved(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The sine and cosine of an angle below 0 would allow what the angle does not."""
+    monkeypatch.setattr("design.certificate.first_failing", lambda *_: None)
+    for robot, region in ((Heli4(), PART), (GoughStewart(), HEXAPOD)):
+        for beyond in (0.1, math.pi, 2 * math.pi, 7.0):
+            bound = max(robot.ranges.passive) + beyond
+            assert certify(robot, region, "passive_joint", at_least=bound, most_boxes=500).status == "undecided"
+
+
+def test_arms_that_touch_are_never_proved_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("design.certificate.first_failing", lambda *_: None)
+    touching = Box(x=0.0, y=(0.3, 0.75), z=(-0.3, -0.15), theta=(-0.3, 0.3))
+    assert worst_poses(Redundant3T1R(), touching, "clearance", about=20_000).value < 1e-3
+    for bound in (0.0, 0.002):
+        assert certify(Redundant3T1R(), touching, "clearance", at_least=bound, most_boxes=20_000).status == "undecided"

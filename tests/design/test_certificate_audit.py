@@ -96,7 +96,17 @@ def test_a_file_keeps_every_bit(tmp_path: Path) -> None:
     save_certificate(_proved(), path)
     read = load_certificate(path)
     assert replay(read, Heli4(), region=CYLINDER, margin="J_q", at_least=0.4) > 0
-    for name in ("mechanism", "digest", "margin", "at_least", "bounds", "characteristic_length", "version", "boxes"):
+    for name in (
+        "mechanism",
+        "digest",
+        "ranges",
+        "margin",
+        "at_least",
+        "bounds",
+        "characteristic_length",
+        "version",
+        "boxes",
+    ):
         assert getattr(read, name) == getattr(_proved(), name)
     assert repr(read.region) == repr(CYLINDER)
     assert (read.codes == _proved().codes).all()
@@ -116,6 +126,7 @@ def test_a_refutation_is_kept_and_replayed(tmp_path: Path) -> None:
     [
         ({"mechanism": "Peppermill"}, "mechanism"),
         ({"digest": "0" * 64}, "geometry"),
+        ({"ranges": "0" * 64}, "joint ranges"),
         ({"version": "0.0.0"}, "version"),
     ],
 )
@@ -126,6 +137,8 @@ def test_a_certificate_for_something_else_is_refused(change: dict[str, str], wha
 
 
 def test_another_geometry_region_margin_or_bound_is_refused() -> None:
+    with pytest.raises(OtherCertificate, match="joint ranges"):
+        replay(_proved(), Heli4(ranges=Heli4.Ranges(passive=(0.9, 1.0))))
     other = Heli4(Heli4.Geometry(arm_length=0.3510001))
     with pytest.raises(OtherCertificate, match="geometry"):
         replay(_proved(), other)
