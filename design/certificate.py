@@ -21,6 +21,7 @@ from design.branch_and_bound import Search, search
 from design.lower_bounds import LowerBounds
 from design.region import Region
 from design.search import worst_poses
+from design.symmetry import Mirrors, mirrors_of
 from kinematics import FviBounds, Mechanism
 from kinematics.errors import InvalidValue
 
@@ -46,6 +47,8 @@ class Certificate:
         boxes: how many boxes were bounded.
         codes: (nodes,) the tree of boxes by level; see `design.tree`. Empty unless proved.
         left: (k, 2, n) lower and upper bounds of the boxes that were not proved.
+        mirrors: coordinates whose signs change together without changing the margin; of each only the side where its
+            first one is at least 0 was looked at. See `design.symmetry`.
     """
 
     mechanism: str
@@ -62,6 +65,7 @@ class Certificate:
     boxes: int
     codes: Array
     left: Array
+    mirrors: Mirrors
 
     def __str__(self) -> str:
         return f"{self.mechanism}: {self.margin} >= {self.at_least:g} {self.status} with {self.boxes} boxes"
@@ -95,7 +99,8 @@ def certify(
     fvi_bounds = bounds or robot.fvi_bounds
     length = robot.characteristic_length if characteristic_length is None else float(characteristic_length)
     at_least = float(at_least)
-    found = _decide(robot, region, margin, at_least, fvi_bounds, length, most_boxes)
+    mirrors = mirrors_of(robot, region, margin)
+    found = _decide(robot, region, mirrors, margin, at_least, fvi_bounds, length, most_boxes)
     refuted, proved = found.counterexample is not None, not len(found.left)
     return Certificate(
         mechanism=type(robot).__name__,
@@ -112,6 +117,7 @@ def certify(
         boxes=found.boxes,
         codes=found.codes if proved and not refuted else np.empty(0, dtype=np.int8),
         left=found.left,
+        mirrors=mirrors,
     )
 
 
@@ -126,7 +132,14 @@ def _check(robot: Mechanism, region: Region, margin: str, at_least: float, most_
 
 
 def _decide(
-    robot: Mechanism, region: Region, margin: str, at_least: float, bounds: FviBounds, length: float, most_boxes: int
+    robot: Mechanism,
+    region: Region,
+    mirrors: Mirrors,
+    margin: str,
+    at_least: float,
+    bounds: FviBounds,
+    length: float,
+    most_boxes: int,
 ) -> Search:
     """Look for a counterexample where the margin is lowest, then prove by boxes."""
     names = robot.pose_names
@@ -139,7 +152,7 @@ def _decide(
     if counterexample is not None:
         return Search(np.empty(0, dtype=np.int8), 0, np.empty((0, 2, len(names))), counterexample)
     lower = LowerBounds(robot, region, margin, at_least, bounds, length)
-    return search(lower, region, names, failing, most_boxes)
+    return search(lower, region, mirrors, names, failing, most_boxes)
 
 
 def _suspects(robot: Mechanism, region: Region, margin: str, bounds: FviBounds, length: float, about: int) -> Array:

@@ -32,7 +32,11 @@ _PLAIN: dict[str, type] = {
 def save_certificate(certificate: Certificate, path: Path) -> None:
     """Write it; the name should end in .npz. Numbers keep every bit."""
     header: dict[str, Any] = {key: getattr(certificate, key) for key in _PLAIN}
-    header |= {"region": _region_record(certificate.region), "bounds": asdict(certificate.bounds)}
+    header |= {
+        "region": _region_record(certificate.region),
+        "bounds": asdict(certificate.bounds),
+        "mirrors": certificate.mirrors,
+    }
     pose = certificate.counterexample
     with path.open("wb") as file:
         np.savez_compressed(
@@ -63,6 +67,7 @@ def load_certificate(path: Path) -> Certificate:
             counterexample=pose if pose.size else None,
             codes=codes,
             left=left,
+            mirrors=tuple(tuple(str(name) for name in mirror) for mirror in header["mirrors"]),
         )
     except BrokenCertificate:
         raise

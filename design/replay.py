@@ -11,6 +11,7 @@ from design.certificate import Certificate, first_failing
 from design.errors import BrokenCertificate, OtherCertificate
 from design.lower_bounds import LowerBounds
 from design.region import Region
+from design.symmetry import mirrors_of, one_side
 from design.tree import LEFT, OUTSIDE, halves, leaves, outside, root
 from kinematics import Mechanism
 
@@ -65,7 +66,10 @@ def _replay_proof(certificate: Certificate, robot: Mechanism) -> int:
     claim.region.check(names)
     lower = LowerBounds(robot, claim.region, claim.margin, claim.at_least, claim.bounds, claim.characteristic_length)
     count = 0
-    for code, low, high in leaves(claim.codes, *root(claim.region, names)):
+    shown = mirrors_of(robot, claim.region, claim.margin)
+    if not set(claim.mirrors) <= set(shown):
+        raise BrokenCertificate(f"it relies on the mirrors {claim.mirrors}; shown to hold: {shown}")
+    for code, low, high in leaves(claim.codes, *one_side(*root(claim.region, names), claim.mirrors, names)):
         if (code == LEFT).any():
             raise BrokenCertificate("a box is left open", low[code == LEFT][0])
         off = code == OUTSIDE

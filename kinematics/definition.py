@@ -33,6 +33,7 @@ class Definition(ABC):
     counts_turns: ClassVar[bool] = False  # whether an angle a turn on is another pose, as on a screw
     home: ClassVar[tuple[float, ...]]  # a pose well inside the workspace
     fvi_bounds: ClassVar[FviBounds]
+    mirrors: ClassVar[tuple[tuple[str, ...], ...]] = ()  # coordinates whose signs change together: a mirror image
     margins: ClassVar[tuple[str, ...]] = ("reach", "joint_travel", "fvi", "J_q", "det_J_q", "det_J_x")
 
     @staticmethod

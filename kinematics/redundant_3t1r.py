@@ -68,6 +68,7 @@ class Redundant3T1R(RodLevel):
     joint_units = ("m",) * _LIMBS
     rotations = (3,)
     margins = (*RodLevel.margins, "passive_joint", "clearance")
+    mirrors = (("y", "theta"), ("z",))
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.0, 0.0)
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=1.0, speed=0.5, force=0.5)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta")

@@ -7,6 +7,7 @@ import numpy as np
 
 from design import Certificate
 from design.claims import Numbers, claims_of
+from design.symmetry import one_side
 from design.tree import PROVED, leaves, root
 from kinematics import Mechanism
 from kinematics.program import Program, replay
@@ -42,11 +43,15 @@ class Auditor:
         """Some of the proved boxes at random."""
         found = [
             np.stack([low[code == PROVED], high[code == PROVED]], axis=1)
-            for code, low, high in leaves(self.certificate.codes, *root(self.certificate.region, self.names))
+            for code, low, high in leaves(self.certificate.codes, *self._root())
         ]
         table = np.concatenate(found)
         chosen = rng.choice(len(table), size=min(count, len(table)), replace=False)
         return [(box[0], box[1]) for box in table[chosen]]
+
+    def _root(self) -> tuple[Array, Array]:
+        c = self.certificate
+        return one_side(*root(c.region, self.names), c.mirrors, self.names)
 
     def holds_at(self, pose: Array) -> bool:
         """Whether every component of the margin, as the mechanism defines it, reaches the bound at a pose."""
