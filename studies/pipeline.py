@@ -40,14 +40,14 @@ class Timing:
     @property
     def half_cycle(self) -> float:
         """The way there, before the stretch to whole periods [s]."""
-        return self.cycle.pieces[0].timed.law.duration
+        return self.cycle.pieces[0].duration
 
     def figures(self) -> dict[str, Any]:
         """What the timing claims, as plain data."""
         there = self.cycle.pieces[0].timed
         return {
-            "law": there.law.name,
-            "half_cycle": there.law.duration,
+            "law": there.motion.name,
+            "half_cycle": there.motion.duration,
             "cycle_on_the_bus": float(self.setpoints.time[-1]),
             "repair_factor": there.factor,
             "peak_over_limit": {

@@ -13,7 +13,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from studies import plots
 from studies.check import shown_pose
 from studies.pipeline import Outcome, Timing
-from trajectory.motion import motion_along
+from trajectory.motion import motion_of
 
 Pictures = list[tuple[str, bytes]]  # title and PNG
 _MAPPED = ("fvi", "internal_determinant")
@@ -127,8 +127,8 @@ def pictures_of(outcome: Outcome) -> Pictures:
 def _motion_pictures(timing: Timing) -> Pictures:
     cycle = timing.cycle
     piece, robot = cycle.pieces[0], cycle.robot
-    times = np.linspace(0.0, piece.timed.law.duration, 1501)
-    motion = motion_along(robot, piece.path, piece.timed.law.at(times), piece.payload)
+    times = np.linspace(0.0, piece.duration, 1501)
+    motion = motion_of(robot, piece.motion.at(times), piece.payload)
     count = len(robot.joint_names)
     unit = "rad" if set(robot.actuator_units) == {"rad"} else "SI"
     rows: list[tuple[str, Any, Any]] = [

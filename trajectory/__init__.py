@@ -13,11 +13,12 @@ from trajectory.cycle import Cycle, Piece, there_and_back
 from trajectory.errors import LimitsExceeded, RoughPath, SetpointFileError, TimingFailed
 from trajectory.files import CannotWrite, require_writable, write_files
 from trajectory.limits import Limits
-from trajectory.motion import Motion, PoseMotion, motion_along, pose_motion
+from trajectory.motion import Motion, PoseMotion, motion_of, pose_motion
 from trajectory.path import Path, Reversed, require_smooth
 from trajectory.repair import Repaired, repair
 from trajectory.setpoint_file import read_setpoints, write_setpoints
 from trajectory.setpoints import Setpoints, cycle_setpoints
+from trajectory.timed import TimedMotion, TimedPath
 from trajectory.timing import PathMotion, TimeLaw
 from trajectory.verification import Peak, Verification, verify
 
@@ -57,10 +58,12 @@ __all__ = [
     "SetpointFileError",
     "Setpoints",
     "TimeLaw",
+    "TimedMotion",
+    "TimedPath",
     "TimingFailed",
     "Verification",
     "cycle_setpoints",
-    "motion_along",
+    "motion_of",
     "plan_approach",
     "pose_motion",
     "read_setpoints",

@@ -14,10 +14,10 @@ from trajectory.errors import LimitsExceeded
 from trajectory.limits import Limits
 from trajectory.path import Path, Reversed
 from trajectory.repair import Repaired, repair
-from trajectory.timing import TimeLaw
+from trajectory.timed import TimedMotion
 from trajectory.verification import Verification, verify
 
-Timing = Callable[[Mechanism, Path, Limits, float], TimeLaw]
+Timing = Callable[[Mechanism, Path, Limits, float], TimedMotion]
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,14 +25,24 @@ class Piece:
     """One way, from rest to rest, within its limits.
 
     Attributes:
-        path: of the pose.
+        path: that was asked for.
         payload: mass at the tool on this way [kg].
-        timed: the law, its verification and the factor of its repair.
+        timed: the motion, its verification and the factor of its repair.
     """
 
     path: Path
     payload: float
     timed: Repaired
+
+    @property
+    def motion(self) -> TimedMotion:
+        """Of the pose, in time."""
+        return self.timed.motion
+
+    @property
+    def duration(self) -> float:
+        """Of this way [s]."""
+        return self.timed.motion.duration
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +56,7 @@ class Cycle:
     @property
     def duration(self) -> float:
         """Of all pieces [s]."""
-        return sum(piece.timed.law.duration for piece in self.pieces)
+        return sum(piece.duration for piece in self.pieces)
 
     def stretched_to(self, period: float) -> Cycle:
         """Every piece stretched to a whole number of periods, so that each pose at rest is a set-point; verified again.
@@ -61,10 +71,10 @@ class Cycle:
         return Cycle(self.robot, self.limits, tuple(self._whole(piece, period) for piece in self.pieces))
 
     def _whole(self, piece: Piece, period: float) -> Piece:
-        law = piece.timed.law.scaled_to(periods_of(piece.timed.law.duration, period) * period)
-        found = _within(verify(self.robot, piece.path, law, self.limits, piece.payload))
-        factor = law.duration / piece.timed.law.duration
-        return Piece(piece.path, piece.payload, Repaired(law, factor, piece.timed.verification, found))
+        factor = periods_of(piece.duration, period) * period / piece.duration
+        motion = piece.motion.stretched(factor)
+        found = _within(verify(self.robot, motion, self.limits, piece.payload))
+        return Piece(piece.path, piece.payload, Repaired(motion, factor, piece.timed.verification, found))
 
 
 def there_and_back(
@@ -91,7 +101,7 @@ def there_and_back(
     loads = (payload, payload if payload_back is None else payload_back)
     pieces = []
     for way, load in zip((path, Reversed(path)), loads, strict=True):
-        timed = repair(robot, way, timing(robot, way, limits, load), limits, load)
+        timed = repair(robot, timing(robot, way, limits, load), limits, load)
         pieces.append(Piece(way, load, timed))
     return Cycle(robot, limits, tuple(pieces))
 

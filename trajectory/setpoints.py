@@ -13,7 +13,7 @@ from kinematics import InvalidShape, InvalidValue, Mechanism
 from kinematics.drives import from_actuators
 from trajectory.cycle import Cycle, Piece, periods_of
 from trajectory.limits import Limits
-from trajectory.motion import Motion, motion_along
+from trajectory.motion import Motion, motion_of
 from trajectory.path import POSE_NAMES, Array
 
 CONVENTIONS = (
@@ -123,7 +123,7 @@ def cycle_setpoints(cycle: Cycle, period: float, joint_units: Sequence[str]) -> 
         LimitsExceeded: the stretched cycle fails its verification.
     """
     whole = cycle.stretched_to(period)
-    counts = [periods_of(piece.timed.law.duration, period) for piece in whole.pieces]
+    counts = [periods_of(piece.duration, period) for piece in whole.pieces]
     parts = []
     for piece, count in zip(whole.pieces, counts, strict=True):
         motion = _sampled(whole, piece, count, last=piece is whole.pieces[-1])
@@ -135,8 +135,8 @@ def cycle_setpoints(cycle: Cycle, period: float, joint_units: Sequence[str]) -> 
 
 def _sampled(cycle: Cycle, piece: Piece, count: int, last: bool) -> Motion:
     """Motion of a piece at its periods; its end is the next piece's start unless it is the last one."""
-    times = np.linspace(0.0, piece.timed.law.duration, count + 1)[: count + 1 if last else count]
-    return motion_along(cycle.robot, piece.path, piece.timed.law.at(times), piece.payload)
+    times = np.linspace(0.0, piece.duration, count + 1)[: count + 1 if last else count]
+    return motion_of(cycle.robot, piece.motion.at(times), piece.payload)
 
 
 def robot_header(robot: Mechanism, limits: Limits) -> dict[str, Any]:
@@ -156,7 +156,7 @@ def robot_header(robot: Mechanism, limits: Limits) -> dict[str, Any]:
 
 def _header(before: Cycle, after: Cycle, period: float, counts: Sequence[int]) -> dict[str, Any]:
     header = robot_header(before.robot, before.limits) | {
-        "laws": [piece.timed.law.name for piece in before.pieces],
+        "laws": [piece.motion.name for piece in before.pieces],
         "period [s]": float(period),
         "periods": list(counts),
         "cycle time before stretching [s]": before.duration,

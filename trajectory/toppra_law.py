@@ -30,6 +30,7 @@ from kinematics.motion import actuator_motion
 from trajectory.errors import TimingFailed
 from trajectory.limits import Limits
 from trajectory.path import Array, Path, require_schoenflies, require_smooth
+from trajectory.timed import TimedPath
 from trajectory.timing import TimeLaw
 
 LEAST_INTERVALS = 1000
@@ -38,7 +39,7 @@ Coefficients = tuple[Array, Array, Array]  # a, b, c, each (N + 1, rows): |a u +
 Parameters = tuple[Array | None, ...]
 
 
-def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = 2000) -> TimeLaw:
+def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = 2000) -> TimedPath:
     """The fastest law from rest to rest on the path.
 
     Args:
@@ -68,7 +69,7 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     bound, rows = _path_limits(robot, derivatives, limits, payload)
     asked = {**limits.as_dict(), "payload": payload, "intervals": intervals, "path": path.as_dict()}
     speed = _solve(grid, bound, rows, asked)
-    return TimeLaw.constant_acceleration("toppra", path.length * grid, path.length * speed)
+    return TimedPath(path, TimeLaw.constant_acceleration("toppra", path.length * grid, path.length * speed))
 
 
 def _path_limits(
