@@ -93,10 +93,9 @@ def claims_of(robot: Mechanism, margin: str, numbers: Numbers, bound: float, ins
         bound: the bound's value; where it is not above 0 the plain components serve.
         inside: (n,) a pose of the region, which gives the signs.
     """
-    if margin == "passive_joint":
-        return _passive_joint(robot, numbers)
-    if margin == "clearance":
-        return _clearance(robot, numbers)
+    exact = {"passive_joint": _passive_joint, "clearance": _clearance}.get(margin)
+    if exact is not None:
+        return exact(robot, numbers)
     maker = {"det_J_x": _det_j_x, "J_q": _j_q, "det_J_q": _det_j_q, "fvi": _fvi}.get(margin)
     if maker is not None and bound > 0.0:
         return maker(robot, numbers, inside)

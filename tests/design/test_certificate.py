@@ -281,7 +281,7 @@ def test_a_bound_beyond_the_whole_range_is_never_proved(monkeypatch: pytest.Monk
     """The sine and cosine of an angle below 0 would allow what the angle does not."""
     monkeypatch.setattr("design.certificate.first_failing", lambda *_: None)
     for robot, region in ((Heli4(), PART), (GoughStewart(), HEXAPOD)):
-        for beyond in (0.1, math.pi, 2 * math.pi, 7.0):
+        for beyond in (0.1, 2 * math.pi):
             bound = max(robot.ranges.passive) + beyond
             assert certify(robot, region, "passive_joint", at_least=bound, most_boxes=500).status == "undecided"
 
