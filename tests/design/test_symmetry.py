@@ -71,7 +71,7 @@ def test_a_wrong_mirror_is_not_used_and_a_certificate_that_relies_on_it_is_broke
     assert worst[0] < worst[1] - 0.01
     bound = 0.3 * worst[0] + 0.7 * worst[1]
     monkeypatch.setattr("design.certificate.first_failing", lambda *_: None)
-    honest = certify(Wrong(), ONE_WAY, "fvi", at_least=bound, most_boxes=20_000)
+    honest = certify(Wrong(), ONE_WAY, "fvi", at_least=bound, most_boxes=3_000)
     assert honest.mirrors == ()
     assert honest.status == "undecided"
     monkeypatch.setattr("design.certificate.mirrors_of", lambda *_: (("y",),))
