@@ -12,6 +12,7 @@ import numpy as np
 
 from design.lower_bounds import LowerBounds
 from design.region import Region
+from design.symmetry import Mirrors, one_side
 from design.tree import BATCH, OUTSIDE, PROVED, Tree, halves, outside, root
 
 Array = np.ndarray
@@ -39,6 +40,7 @@ class Search:
 def search(
     bounds: LowerBounds,
     region: Region,
+    mirrors: Mirrors,
     names: tuple[str, ...],
     failing: Callable[[Array], Array | None],
     most_boxes: int,
@@ -47,10 +49,11 @@ def search(
     """Bound boxes, cut those that stay open along the coordinate that spreads their claims the most.
 
     Args:
+        mirrors: those that allow to look at one side only.
         failing: (k, n) midpoints of open boxes -> one of them where the requirement fails, else None.
         progress: told how far it is after each batch.
     """
-    low, high = root(region, names)
+    low, high = one_side(*root(region, names), mirrors, names)
     extent = np.where(high[0] > low[0], high[0] - low[0], 1.0)
     tree = Tree()
     stack = [(np.zeros(1, dtype=np.int64), low, high)]

@@ -22,6 +22,7 @@ from design.branch_and_bound import Search, search
 from design.lower_bounds import LowerBounds
 from design.region import Region
 from design.search import worst_poses
+from design.symmetry import Mirrors, mirrors_of
 from kinematics import FviBounds, Mechanism
 from kinematics.errors import InvalidValue
 
@@ -38,7 +39,7 @@ class Certificate:
     """A claim, the answer, and for a proof the boxes that anyone can check again.
 
     Attributes:
-        mechanism, digest: class name and SHA-256 of the geometry.
+        mechanism, digest, ranges: class name, SHA-256 of the geometry and of the joints' ranges.
         region, margin, at_least: the claim.
         bounds, characteristic_length: what the FVI is measured with; length in metres.
         version: of the program that made it.
@@ -47,10 +48,13 @@ class Certificate:
         boxes: how many boxes were bounded.
         codes: (nodes,) the tree of boxes by level; see `design.tree`. Empty unless proved.
         left: (k, 2, n) lower and upper bounds of the boxes that were not proved.
+        mirrors: coordinates whose signs change together without changing the margin; of each only the side where its
+            first one is at least 0 was looked at. See `design.symmetry`.
     """
 
     mechanism: str
     digest: str
+    ranges: str
     region: Region
     margin: str
     at_least: float
@@ -62,6 +66,7 @@ class Certificate:
     boxes: int
     codes: Array
     left: Array
+    mirrors: Mirrors
 
     def __str__(self) -> str:
         return f"{self.mechanism}: {self.margin} >= {self.at_least:g} {self.status} with {self.boxes} boxes"
@@ -93,42 +98,31 @@ def certify(
         InvalidRegion: the region does not speak of the robot's coordinates.
         InvalidValue: an unknown margin, a bound that is not finite, or no box allowed.
     """
-    names = robot.pose_names
-    region.check(names)
-    if not np.isfinite(at_least):
-        raise InvalidValue("at_least", at_least, "a finite number")
-    if most_boxes < 1:
-        raise InvalidValue("most_boxes", most_boxes, "at least 1")
-    if margin not in robot.margins:
-        raise InvalidValue(f"{type(robot).__name__} margin", margin, f"one of {', '.join(robot.margins)}")
+    _check(robot, region, margin, at_least, most_boxes)
     fvi_bounds = bounds or robot.fvi_bounds
     length = robot.characteristic_length if characteristic_length is None else float(characteristic_length)
     at_least = float(at_least)
-
-    def failing(poses: Array) -> Array | None:
-        inside = poses[region.contains(poses, names)]
-        return first_failing(robot, margin, inside, at_least, fvi_bounds, length)
-
-    what = f"certify {margin} >= {at_least:g}"
-    progress(f"{what}: looking for a counterexample")
-    counterexample = failing(suspects(robot, region, margin, fvi_bounds, length, SEED))
-    if counterexample is not None:
-        nothing = np.empty((0, 2, len(names)))
-        found = Search(np.empty(0, dtype=np.int8), 0, nothing, counterexample)
-    else:
-        lower = LowerBounds(robot, region, margin, at_least, fvi_bounds, length)
-        found = search(lower, region, names, failing, most_boxes, lambda done: progress(f"{what}: {done}"))
-    return answer(robot, region, margin, at_least, fvi_bounds, length, found)
+    mirrors = mirrors_of(robot, region, margin)
+    found = _decide(robot, region, mirrors, margin, at_least, fvi_bounds, length, most_boxes, progress)
+    return answer(robot, region, mirrors, margin, at_least, fvi_bounds, length, found)
 
 
 def answer(
-    robot: Mechanism, region: Region, margin: str, at_least: float, bounds: FviBounds, length: float, found: Search
+    robot: Mechanism,
+    region: Region,
+    mirrors: Mirrors,
+    margin: str,
+    at_least: float,
+    bounds: FviBounds,
+    length: float,
+    found: Search,
 ) -> Certificate:
     """What a search over a region came to, with all that it was asked."""
     refuted, proved = found.counterexample is not None, not len(found.left)
     return Certificate(
         mechanism=type(robot).__name__,
         digest=robot.geometry.digest,
+        ranges=robot.ranges.digest,
         region=region,
         margin=margin,
         at_least=at_least,
@@ -140,7 +134,45 @@ def answer(
         boxes=found.boxes,
         codes=found.codes if proved and not refuted else np.empty(0, dtype=np.int8),
         left=found.left,
+        mirrors=mirrors,
     )
+
+
+def _check(robot: Mechanism, region: Region, margin: str, at_least: float, most_boxes: int) -> None:
+    region.check(robot.pose_names)
+    if not np.isfinite(at_least):
+        raise InvalidValue("at_least", at_least, "a finite number")
+    if most_boxes < 1:
+        raise InvalidValue("most_boxes", most_boxes, "at least 1")
+    if margin not in robot.margins:
+        raise InvalidValue(f"{type(robot).__name__} margin", margin, f"one of {', '.join(robot.margins)}")
+
+
+def _decide(
+    robot: Mechanism,
+    region: Region,
+    mirrors: Mirrors,
+    margin: str,
+    at_least: float,
+    bounds: FviBounds,
+    length: float,
+    most_boxes: int,
+    progress: Progress,
+) -> Search:
+    """Look for a counterexample where the margin is lowest, then prove by boxes."""
+    names = robot.pose_names
+
+    def failing(poses: Array) -> Array | None:
+        inside = poses[region.contains(poses, names)]
+        return first_failing(robot, margin, inside, at_least, bounds, length)
+
+    what = f"certify {margin} >= {at_least:g}"
+    progress(f"{what}: looking for a counterexample")
+    counterexample = failing(suspects(robot, region, margin, bounds, length, SEED))
+    if counterexample is not None:
+        return Search(np.empty(0, dtype=np.int8), 0, np.empty((0, 2, len(names))), counterexample)
+    lower = LowerBounds(robot, region, margin, at_least, bounds, length)
+    return search(lower, region, mirrors, names, failing, most_boxes, lambda done: progress(f"{what}: {done}"))
 
 
 def suspects(robot: Mechanism, region: Region, margin: str, bounds: FviBounds, length: float, about: int) -> Array:

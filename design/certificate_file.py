@@ -22,6 +22,7 @@ from kinematics.errors import LinkwrightError
 _PLAIN: dict[str, type] = {
     "mechanism": str,
     "digest": str,
+    "ranges": str,
     "margin": str,
     "at_least": float,
     "characteristic_length": float,
@@ -51,7 +52,11 @@ _FAULTS = (
 def certificate_bytes(certificate: Certificate) -> bytes:
     """The file's content; the same certificate gives the same bytes."""
     header: dict[str, Any] = {key: getattr(certificate, key) for key in _PLAIN}
-    header |= {"region": _region_record(certificate.region), "bounds": asdict(certificate.bounds)}
+    header |= {
+        "region": _region_record(certificate.region),
+        "bounds": asdict(certificate.bounds),
+        "mirrors": certificate.mirrors,
+    }
     pose = certificate.counterexample
     buffer = io.BytesIO()
     np.savez_compressed(
@@ -97,6 +102,7 @@ def _certificate(path: Path) -> Certificate:
         counterexample=pose if pose.size else None,
         codes=codes,
         left=left,
+        mirrors=tuple(tuple(str(name) for name in mirror) for mirror in header["mirrors"]),
     )
 
 

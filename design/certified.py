@@ -18,6 +18,7 @@ from design.lower_bounds import LowerBounds
 from design.maps import map_of
 from design.region import Box, Cylinder, Region
 from design.section import Section
+from design.symmetry import mirrors_of
 from kinematics import FviBounds, Mechanism
 from kinematics.errors import InvalidValue
 
@@ -169,10 +170,11 @@ def certified_cells(
                 zip(axes, (chart.first[[column, column + size]], chart.second[[row, row + size]]), strict=True)
             )
             cell = Box(**{**region.intervals, **{name: (float(a), float(b)) for name, (a, b) in sides.items()}})
-            found = search(lower, cell, names, failing, most_boxes, lambda _: None)
+            mirrors = mirrors_of(robot, cell, margin)
+            found = search(lower, cell, mirrors, names, failing, most_boxes, lambda _: None)
             boxes += found.boxes
             if found.counterexample is None and not len(found.left):
-                proved.append(answer(robot, cell, margin, at_least, fvi_bounds, length, found))
+                proved.append(answer(robot, cell, mirrors, margin, at_least, fvi_bounds, length, found))
                 continue
             if size == 1 and found.counterexample is None:
                 left.append(found.left)

@@ -15,12 +15,18 @@ is rewritten. The lemmas:
   factors in the middle of the box, so M is nearly the identity. A square J_mw = diag(1 / b) A needs no M: with
   A S in place of J, p_i = b_i S adj(A S) e_i / det(A S). Then b_i = 0 breaks speed i, as a_i = 0 would break det A.
 
+- A passive joint's angle: `PassiveJoint.within`, sines and cosines in place of the arctangent, where the limb reaches.
+- A clearance between segments is at least c where any vector w, not 0, parts them: w . (p - q) - c |w| >= 0 for the
+  ends p of one and q of the other, as then all of their points are so far apart along w. The shortest line between the
+  segments in the middle of the box serves as w.
+
 That the scales are positive is claimed with the rest; the FVI's own numbers must be. S is an input of its own: any
-numbers are right, good ones only make the bounds tight.
+numbers are right, good ones only make the bounds tight. So are the w.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from types import SimpleNamespace
 from typing import Any
@@ -28,7 +34,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from design.scaling import near_inverse
 from kinematics import FviBounds, Mechanism
+from kinematics.clearance import segment_gap_symbolic
 from kinematics.indices import homogeneous, sides
 from kinematics.linear import adjugate, determinant, volume
 
@@ -65,14 +73,16 @@ class Numbers:
 
 @dataclass(frozen=True)
 class Claims:
-    """Expressions (c,) that must be at least 0 over the region; `scaling` S holds the symbols of a square matrix.
+    """Expressions (c,) that must be at least 0 over the region; `scaling` holds symbols of a matrix of any numbers.
 
-    `matrix` is what S is made from, in the middle of each box; None where no S stands in the expressions.
+    `matrix` is what these come from, in the middle of each box, by `chosen`: (k, r, c) plain values -> (k, rows,
+    columns) of `scaling`. None where no scaling stands in the expressions.
     """
 
     expressions: ca.SX
     scaling: ca.SX
     matrix: ca.SX | None = None
+    chosen: Callable[[Array], Array] = near_inverse
 
 
 def claims_of(robot: Mechanism, margin: str, numbers: Numbers, bound: float, inside: Array) -> Claims:
@@ -83,6 +93,9 @@ def claims_of(robot: Mechanism, margin: str, numbers: Numbers, bound: float, ins
         bound: the bound's value; where it is not above 0 the plain components serve.
         inside: (n,) a pose of the region, which gives the signs.
     """
+    exact = {"passive_joint": _passive_joint, "clearance": _clearance}.get(margin)
+    if exact is not None:
+        return exact(robot, numbers)
     maker = {"det_J_x": _det_j_x, "J_q": _j_q, "det_J_q": _det_j_q, "fvi": _fvi}.get(margin)
     if maker is not None and bound > 0.0:
         return maker(robot, numbers, inside)
@@ -98,6 +111,30 @@ def _signed(robot: Mechanism, expression: ca.SX, inside: Array) -> ca.SX:
     model = robot.model()
     at = ca.Function("sign", [model.pose, model.geometry], [expression])(inside, robot.geometry.vector())
     return ca.SX(np.where(np.array(at) < 0.0, -1.0, 1.0)) * expression
+
+
+def _passive_joint(robot: Mechanism, numbers: Numbers) -> Claims:
+    model = robot.model()
+    rows = robot.passive_rows(lambda joint, limits: joint.within(limits, numbers.bound))
+    return Claims(ca.vertcat(rows, robot.reach(model.pose, model.g) - _POSITIVE), ca.SX(0, 0))
+
+
+def _clearance(robot: Mechanism, numbers: Numbers) -> Claims:
+    pairs = robot.segment_pairs()
+    gaps = ca.horzcat(*(segment_gap_symbolic(one, two) for one, two in pairs))
+    w = ca.SX.sym("w", 3, len(pairs))
+    rows = [ca.sumsqr(w[:, k]) - _REGULAR for k in range(len(pairs))]
+    for k, (one, two) in enumerate(pairs):
+        kept = numbers.bound * ca.norm_2(w[:, k])
+        rows += [ca.dot(w[:, k], two[:, j] - one[:, i]) - kept for i in (0, 1) for j in (0, 1)]
+    return Claims(ca.vertcat(*rows), w, gaps, _directions)
+
+
+def _directions(gaps: Array) -> Array:
+    """(k, 3, c) each column over its length; e_x where it has none."""
+    size = np.linalg.norm(gaps, axis=1, keepdims=True)
+    usable = np.isfinite(size) & (size > 1e-12)
+    return np.where(usable, gaps / np.where(usable, size, 1.0), np.array([1.0, 0.0, 0.0])[:, None])
 
 
 def _det_j_x(robot: Mechanism, numbers: Numbers, inside: Array) -> Claims:

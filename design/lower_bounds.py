@@ -2,7 +2,8 @@
 
 Two enclosures of each claim f over a box X with midpoint m: the natural one, and the centred form
 f(m) + G(X) (X - m) with the gradient's enclosure G. The centred form holds because finite natural bounds say that f is
-defined, hence smooth, on all of the box, and G encloses every gradient on it. All of it is rounded outward.
+defined on all of the box, and G encloses every gradient on it. It is used only where whatever f branches on is decided
+on the box: f is then smooth, or has a kink (|x|, min) that G spans. All of it is rounded outward.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from kinematics.box_program import BoxProgram
 from kinematics.errors import InvalidValue
 from kinematics.interpreter import bulk, evaluate
 from kinematics.interval import enclose
-from kinematics.program import Program
+from kinematics.program import Op, Program, replay
 from kinematics.threads import over_spans
 
 Array = np.ndarray
@@ -61,8 +62,11 @@ class LowerBounds:
             )
 
         self._count = claims.expressions.numel()
-        self._with_gradient, self._plain = program(claims.expressions, gradient), program(claims.expressions)
-        self._size = claims.scaling.shape[0]
+        conditions = _conditions(symbols, claims.expressions)
+        self._with_gradient = program(claims.expressions, gradient, conditions)
+        self._plain = program(claims.expressions)
+        self._slopes = self._count * (1 + self.free.size)  # where the conditions start
+        self._chosen, self._size = claims.chosen, claims.scaling.numel()
         self._matrix = _plain_program(robot, claims.matrix, numbers, fixed) if claims.matrix is not None else None
 
     def lowest(self, low: Array, high: Array) -> tuple[Array, Array]:
@@ -78,13 +82,16 @@ class LowerBounds:
         middle = np.clip(0.5 * low + 0.5 * high, low, high)
         scaling = self._scaling(middle)
         natural, highest = enclose(self._with_gradient, np.hstack([low, scaling]), np.hstack([high, scaling]))
+        decided = (natural[:, self._slopes :] == highest[:, self._slopes :]).all(axis=1)
         at = np.hstack([middle, scaling])
         point, _ = enclose(self._plain, at, at)
         reach = np.nextafter(np.maximum(high - middle, middle - low)[:, self.free], np.inf)
         lowest, spread = np.empty(len(low)), np.empty((len(low), self.free.size))
         over_spans(
             len(low),
-            lambda s: _combine(self._count, natural[s], highest[s], point[s], reach[s], lowest[s], spread[s]),
+            lambda s: _combine(
+                self._count, natural[s], highest[s], decided[s], point[s], reach[s], lowest[s], spread[s]
+            ),
         )
         return lowest, spread
 
@@ -97,21 +104,38 @@ class LowerBounds:
         return self.free[spread.argmax(axis=1)]
 
     def _scaling(self, middle: Array) -> Array:
-        """(k, size^2) the matrices S, column by column: R^-1 of the QR factors, or the inverse of a square matrix."""
+        """(k, size) the numbers of the claims' scaling, column by column."""
         if self._matrix is None:
             return np.empty((len(middle), 0))
         (values,) = evaluate(self._matrix, middle)
-        size = np.abs(values).max(axis=(-2, -1), initial=0.0)
-        usable = np.isfinite(size) & (size > 1e-30) & (size < 1e30)  # NaN is neither
-        eye = np.eye(self._size)
-        result = np.broadcast_to(eye, (len(middle), self._size, self._size)).copy()
-        size = size[usable][:, None, None]
-        values = values[usable] / size
-        if values.shape[-2] != values.shape[-1]:
-            values = np.linalg.cholesky(np.swapaxes(values, -1, -2) @ values + 1e-14 * eye, upper=True)
-        regular = np.abs(np.linalg.det(values)) > 1e-200
-        result[np.flatnonzero(usable)[regular]] = np.linalg.inv(values[regular]) / size[regular]
-        return np.swapaxes(result, -1, -2).reshape(len(middle), self._size**2)
+        return np.swapaxes(self._chosen(values), -1, -2).reshape(len(middle), self._size)
+
+
+def _conditions(symbols: list[ca.SX], expressions: ca.SX) -> ca.SX:
+    """(k,) all that the expressions branch on or jump with: 0 or 1, or a sign."""
+    found: list[ca.SX] = []
+
+    def noted(condition: ca.SX) -> ca.SX:
+        found.append(condition)
+        return condition
+
+    def branch(condition: ca.SX, value: ca.SX) -> ca.SX:
+        noted(ca.logic_not(condition))
+        return ca.if_else(condition, value, 0)
+
+    program = Program.of(ca.Function("claims", symbols, [ca.densify(expressions)]))
+    replay(
+        program,
+        [symbol[i] for symbol in symbols for i in range(symbol.numel())],
+        {
+            Op.LT: lambda a, b: noted(ca.lt(a, b)),
+            Op.LE: lambda a, b: noted(ca.le(a, b)),
+            Op.NOT: lambda a, _: noted(ca.logic_not(a)),
+            Op.SIGN: lambda a, _: noted(ca.sign(a)),
+            Op.IF_ELSE_ZERO: branch,
+        },
+    )
+    return ca.vertcat(*found) if found else ca.SX(0, 1)
 
 
 def _plain_program(robot: Mechanism, matrix: ca.SX, numbers: Numbers, fixed: list[float]) -> BlockProgram:
@@ -122,7 +146,7 @@ def _plain_program(robot: Mechanism, matrix: ca.SX, numbers: Numbers, fixed: lis
 
 
 @numba.njit(nogil=True, cache=True, error_model="numpy")
-def _combine(count, natural, highest, point, reach, lowest, spread):  # type: ignore[no-untyped-def]
+def _combine(count, natural, highest, decided, point, reach, lowest, spread):  # type: ignore[no-untyped-def]
     """Centred form of each claim, rounded outward; its smallest lower bound and the open claims' spread."""
     n = reach.shape[1]
     for i in range(natural.shape[0]):
@@ -136,7 +160,7 @@ def _combine(count, natural, highest, point, reach, lowest, spread):  # type: ig
                     j = count + c * n + k
                     loss += max(abs(natural[i, j]), abs(highest[i, j])) * reach[i, k]
                 # Finite natural bounds: the claim is defined on all of the box.
-                if width - width == 0.0 and loss - loss == 0.0:
+                if decided[i] and width - width == 0.0 and loss - loss == 0.0:
                     centred = point[i, c] - (loss * _UP + _TINY)
                     best = max(best, centred - abs(centred) * 2.0**-52 - _TINY)
                 if not best >= 0.0:

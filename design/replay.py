@@ -11,6 +11,7 @@ from design.certificate import Certificate, first_failing
 from design.errors import BrokenCertificate, OtherCertificate
 from design.lower_bounds import LowerBounds
 from design.region import Region
+from design.symmetry import mirrors_of, one_side
 from design.tree import LEFT, OUTSIDE, halves, leaves, outside, root
 from kinematics import FviBounds, Mechanism
 
@@ -37,12 +38,14 @@ def replay(
         How many boxes were bounded again; 1 for the pose of a refutation.
 
     Raises:
-        OtherCertificate: another mechanism, geometry, version, region, margin, FVI bounds, length, or a lower bound.
+        OtherCertificate: another mechanism, geometry, ranges, version, region, margin, FVI bounds, length, or a lower
+            bound.
         BrokenCertificate: its boxes do not cover the region, are not as many as it says, or one is not proved; its pose
             does not refute; or it decides nothing.
     """
     _same("mechanism", certificate.mechanism, type(robot).__name__)
     _same("geometry", certificate.digest, robot.geometry.digest)
+    _same("joint ranges", certificate.ranges, robot.ranges.digest)
     _same("version", certificate.version, version("linkwright"))
     if region is not None:
         _same("region", repr(certificate.region), repr(region))
@@ -73,7 +76,10 @@ def _replay_proof(certificate: Certificate, robot: Mechanism) -> int:
         raise BrokenCertificate(f"it says {claim.boxes} boxes and lists {bounded}")
     lower = LowerBounds(robot, claim.region, claim.margin, claim.at_least, claim.bounds, claim.characteristic_length)
     count = 0
-    for code, low, high in leaves(claim.codes, *root(claim.region, names)):
+    shown = mirrors_of(robot, claim.region, claim.margin)
+    if not set(claim.mirrors) <= set(shown):
+        raise BrokenCertificate(f"it relies on the mirrors {claim.mirrors}; shown to hold: {shown}")
+    for code, low, high in leaves(claim.codes, *one_side(*root(claim.region, names), claim.mirrors, names)):
         if (code == LEFT).any():
             raise BrokenCertificate("a box is left open", low[code == LEFT][0])
         off = code == OUTSIDE

@@ -173,7 +173,7 @@ def _robot(problem: Problem, values: Array) -> Mechanism:
     """The mechanism with these variables, rounded to the micrometre so that a file holds exactly what was checked."""
     low, high = problem.bounds()
     vector = problem.geometry(np.clip(np.round(values, 6), low, high))
-    return type(problem.robot)(problem.robot.Geometry.from_vector(vector), problem.robot.inertia)
+    return type(problem.robot)(problem.robot.Geometry.from_vector(vector), problem.robot.inertia, problem.robot.ranges)
 
 
 def worst_of(problem: Problem, robot: Mechanism, region: Region, about: int = DENSE) -> dict[str, WorstPoses]:

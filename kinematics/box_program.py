@@ -15,7 +15,8 @@ from kinematics.errors import InvalidValue
 from kinematics.interval import operate
 from kinematics.program import Op, Program
 
-_TOTAL = {Op.ADD, Op.SUB, Op.MUL, Op.SQ, Op.NEG, Op.TWICE, Op.SIN, Op.COS, Op.ASSIGN}  # defined for all real operands
+# Defined for all real operands.
+_TOTAL = {Op.ADD, Op.SUB, Op.MUL, Op.SQ, Op.NEG, Op.TWICE, Op.SIN, Op.COS, Op.ASSIGN, Op.LT, Op.LE, Op.NOT}
 _ZERO, _ONE = (0.0, 0.0), (1.0, 1.0)
 
 

@@ -25,13 +25,13 @@ def segment_distances(one: Array, two: Array) -> Array:
     return np.fmin(ends, _perpendicular(a, b, c, d))
 
 
-def segment_distance_symbolic(one: ca.SX, two: ca.SX) -> ca.SX:
-    """Distance between two segments of positive length, each (3, 2) with its ends in columns [m].
+def segment_gap_symbolic(one: ca.SX, two: ca.SX) -> ca.SX:
+    """(3,) the shortest way from one segment of positive length to another, each (3, 2) with its ends in columns [m].
 
     The nearest point of the first segment's line, held within the segment; of the second, nearest to it, held within;
     and of the first again. As the square is convex, no further turn is needed. Parallel segments start from any point:
     both numerator and determinant are 0 there. Within 1e-7 rad of parallel, 1e-7 of the length may be lost.
-    NaN where an end is NaN; no derivative where the segments touch.
+    NaN where an end is NaN.
     """
     a, c = one[:, 0], two[:, 0]
     u, v, w = one[:, 1] - a, two[:, 1] - c, c - a
@@ -39,7 +39,7 @@ def segment_distance_symbolic(one: ca.SX, two: ca.SX) -> ca.SX:
     s = _within((uw * vv - vw * uv) / ca.fmax(uu * vv - uv * uv, _PARALLEL * uu * vv))
     t = _within((s * uv - vw) / vv)
     s = _within((uw + t * uv) / uu)
-    return ca.norm_2(w + t * v - s * u)
+    return w + t * v - s * u
 
 
 def _within(share: ca.SX) -> ca.SX:

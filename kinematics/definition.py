@@ -15,6 +15,7 @@ import numpy as np
 from kinematics.bodies import Bodies, InertiaRecord
 from kinematics.geometry import GeometryRecord
 from kinematics.indices import FviBounds
+from kinematics.ranges import JointRanges, PassiveJoint
 
 Array = np.ndarray
 
@@ -24,6 +25,7 @@ class Definition(ABC):
 
     Geometry: ClassVar[type[GeometryRecord]]
     Inertia: ClassVar[type[InertiaRecord]]
+    Ranges: ClassVar[type[JointRanges]] = JointRanges  # a frozen dataclass of joint limits, with defaults
     pose_names: ClassVar[tuple[str, ...]]
     joint_names: ClassVar[tuple[str, ...]]
     joint_units: ClassVar[tuple[str, ...]]  # rad or m
@@ -31,7 +33,8 @@ class Definition(ABC):
     counts_turns: ClassVar[bool] = False  # whether an angle a turn on is another pose, as on a screw
     home: ClassVar[tuple[float, ...]]  # a pose well inside the workspace
     fvi_bounds: ClassVar[FviBounds]
-    margins: ClassVar[tuple[str, ...]] = ("reach", "fvi", "J_q", "det_J_q", "det_J_x")
+    mirrors: ClassVar[tuple[tuple[str, ...], ...]] = ()  # coordinates whose signs change together: a mirror image
+    margins: ClassVar[tuple[str, ...]] = ("reach", "joint_travel", "fvi", "J_q", "det_J_q", "det_J_x")
 
     @staticmethod
     @abstractmethod
@@ -64,6 +67,14 @@ class Definition(ABC):
     @abstractmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
         """Named polylines (3, k) that draw the mechanism: base, arms, rods, platform."""
+
+    def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:  # noqa: ARG002
+        """The joints at the rods' ends; where there are any, `Ranges` limits them and "passive_joint" is a margin."""
+        return []
+
+    def segment_pairs(self) -> list[tuple[ca.SX, ca.SX]]:
+        """Members (3, 2) at a pose that must not meet, ends in columns; with any, "clearance" [m] is a margin."""
+        return []
 
     @classmethod
     def drives(cls, g: SimpleNamespace) -> ca.SX:  # noqa: ARG003

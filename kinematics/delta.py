@@ -17,7 +17,7 @@ from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array, Build
 from kinematics.model import Model
-from kinematics.rotary_limbs import ArmInertia, Limbs, RotaryLimbs, columns, radial_directions
+from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, columns, radial_directions
 
 _DEG = math.pi / 180.0
 
@@ -58,6 +58,7 @@ class Delta(RotaryLimbs):
 
     Geometry = DeltaGeometry
     Inertia = DeltaInertia
+    Ranges = ArmRanges
     geometry: DeltaGeometry
     inertia: DeltaInertia
     pose_names = ("x", "y", "z")
@@ -66,6 +67,7 @@ class Delta(RotaryLimbs):
     rotations = ()
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.75)
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
+    margins = (*RotaryLimbs.margins, "passive_joint")
 
     @property
     def characteristic_length(self) -> float:

@@ -19,11 +19,9 @@ Points = tuple[tuple[float, ...], ...]  # rows of numbers
 TURN = 2.0 * math.pi
 
 
-def length(
-    default: float | tuple[float, ...] | Points, *, minimum: float | None = 0.0, bounded: bool = True, doc: str
-) -> Any:
-    """A length in metres, greater than `minimum` (None: any sign); infinite only where not `bounded`."""
-    metadata = {"dimension": "length", "minimum": minimum, "bounded": bounded, "doc": doc}
+def length(default: float | tuple[float, ...] | Points, *, minimum: float | None = 0.0, doc: str) -> Any:
+    """A length in metres, greater than `minimum` (None: any sign)."""
+    metadata = {"dimension": "length", "minimum": minimum, "doc": doc}
     return field(default=default, metadata=metadata)
 
 
@@ -65,7 +63,7 @@ class GeometryRecord:
             array = _numbers(given)
             if array is None or array.shape != wanted:
                 raise self._invalid(f.name, given, words)
-            if np.any(np.isnan(array)) or (f.metadata.get("bounded", True) and np.any(np.isinf(array))):
+            if not np.isfinite(array).all():
                 raise self._invalid(f.name, given, "finite values")
             minimum = f.metadata["minimum"]
             if minimum is not None and np.any(array <= minimum):

@@ -18,9 +18,10 @@ from kinematics.bodies import Bodies, InertiaRecord, Particle, Rotor
 from kinematics.errors import InvalidShape
 from kinematics.geometry import TURN
 from kinematics.gough_stewart_forward import ForwardSolution, assembly_modes, matched_pose, solve_forward
-from kinematics.gough_stewart_geometry import GoughStewartGeometry
+from kinematics.gough_stewart_geometry import GoughStewartGeometry, GoughStewartRanges
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Array, Mechanism
+from kinematics.ranges import PassiveJoint
 
 _SCREW = ("x", "y", "z", "about x", "about y", "about z")
 
@@ -47,13 +48,12 @@ class GoughStewartInertia(InertiaRecord):
 class GoughStewart(Mechanism):
     """Pose [x, y, z, roll, pitch, yaw], joints q1..q6, the leg lengths |A_i B_i|.
 
-    A leg reaches every point but its own base joint; `leg_limits` of the geometry adds a stroke, beyond which
-    `inverse` and `forward` give NaN and `reach` is negative. The Jacobians, and the indices made of them (`fvi`,
-    `isotropic` and so on), are those of the legs as lines and do not ask for the stroke: there `fvi` is finite.
+    A leg reaches every point but its own base joint; what its stroke leaves of that is the margin `joint_travel`.
     """
 
     Geometry = GoughStewartGeometry
     Inertia = GoughStewartInertia
+    Ranges = GoughStewartRanges
     geometry: GoughStewartGeometry
     inertia: GoughStewartInertia
     pose_names = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -62,6 +62,7 @@ class GoughStewart(Mechanism):
     rotations = (3, 4, 5)
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.6, 0.0, 0.0, 0.0)  # of the default geometry
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=2000.0, speed=0.3, force=500.0)
+    margins = (*Mechanism.margins, "passive_joint")
 
     @property
     def characteristic_length(self) -> float:
@@ -155,9 +156,8 @@ class GoughStewart(Mechanism):
 
     @staticmethod
     def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """How far each leg is from its shortest and longest length, by default 0 and infinity [m]."""
-        lengths = GoughStewart.inverse_closed_form(pose, g)
-        return ca.fmin(lengths - g.leg_limits[0], g.leg_limits[1] - lengths)
+        """The leg itself: it reaches everything but its own base joint [m]."""
+        return GoughStewart.inverse_closed_form(pose, g)
 
     @staticmethod
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
@@ -171,15 +171,13 @@ class GoughStewart(Mechanism):
         return ca.SX.ones(6), 8 * mean_square * ca.sqrt(mean_square)
 
     def inverse(self, pose: Array) -> Array:
-        """(..., 6) -> (..., 6) leg lengths [m]; a NaN row where a leg is beyond its limits or has no length."""
-        return self._allowed(super().inverse(pose))
+        """(..., 6) -> (..., 6) leg lengths [m]; a NaN row where a leg has no length."""
+        return self._possible(super().inverse(pose))
 
-    def _allowed(self, joints: Array) -> Array:
-        low, high = self.geometry.leg_limits
-        allowed = ((joints > 0.0) & (joints >= low) & (joints <= high) & np.isfinite(joints)).all(
-            axis=-1, keepdims=True
-        )
-        return np.where(allowed, joints, np.nan)
+    @staticmethod
+    def _possible(joints: Array) -> Array:
+        possible = ((joints > 0.0) & np.isfinite(joints)).all(axis=-1, keepdims=True)
+        return np.where(possible, joints, np.nan)
 
     # Rates and forces.
 
@@ -214,7 +212,7 @@ class GoughStewart(Mechanism):
     # The forward model.
 
     def lengths_and_jacobian(self, pose: Array) -> tuple[Array, Array]:
-        """Leg lengths (..., 6), whatever their limits, and the inverse Jacobian (..., 6, 6) [8.20] at once."""
+        """Leg lengths (..., 6) and the inverse Jacobian (..., 6, 6) [8.20] at once."""
         lengths, jacobian = self._evaluate("newton", lambda m: [m.inverse, m.j_x], pose)
         return lengths, jacobian
 
@@ -241,7 +239,7 @@ class GoughStewart(Mechanism):
 
     def solve_forward(self, joints: Array, start: Array | None = None, iterations: int = 30) -> ForwardSolution:
         """As `forward`, and says where it converged, in how many steps and with which error."""
-        joints = self._allowed(self._joints(joints))
+        joints = self._possible(self._joints(joints))
         begin = self._poses(self.initial_pose if start is None else start)
         return solve_forward(self, *self._together(joints, begin), iterations)
 
@@ -255,9 +253,19 @@ class GoughStewart(Mechanism):
         joints = self._joints(joints)
         if joints.ndim != 1:
             raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
-        return assembly_modes(self, self._allowed(joints))
+        return assembly_modes(self, self._possible(joints))
 
     # Masses and drawing.
+
+    def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:
+        """Universal joints on the base and spherical ones on the platform, mounted along the legs at `ranges.rest`."""
+        rests, legs = self.legs(ca.vertcat(*self.ranges.rest, 0, 0, 0), g), self.legs(pose, g)
+        axes = rests @ ca.diag(1 / _lengths(rests))
+        return [
+            PassiveJoint(held[:, i], legs[:, i], joints[i], end, swivels=False)
+            for end, held in enumerate((axes, self.rotation(pose) @ axes))
+            for i in range(6)
+        ]
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
         """Screws driven by the joints; rods, platform and payload carried by the pose."""

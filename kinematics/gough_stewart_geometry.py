@@ -11,6 +11,7 @@ import numpy as np
 from kinematics.architecture_singularity import why_singular
 from kinematics.errors import InvalidGeometry, InvalidValue
 from kinematics.geometry import TURN, GeometryRecord, Points, frame, length
+from kinematics.ranges import Pair, RodRanges
 
 Array = np.ndarray
 _DEG = math.pi / 180.0
@@ -37,8 +38,8 @@ class GoughStewartGeometry(GeometryRecord):
     them to where the chapter puts them.
 
     Raises:
-        InvalidGeometry: besides what any geometry refuses: a frame is not a rigid transform, the leg limits are not in
-            order, or the architecture is singular at every pose (the message says why).
+        InvalidGeometry: besides what any geometry refuses: a frame is not a rigid transform, or the architecture
+            is singular at every pose (the message says why).
     """
 
     base_points: tuple[tuple[float, ...], ...] = length(
@@ -47,9 +48,6 @@ class GoughStewartGeometry(GeometryRecord):
     platform_points: tuple[tuple[float, ...], ...] = length(_platform(0.3, 12 * _DEG), minimum=None, doc="B_i in R_m")
     Z: tuple[tuple[float, ...], ...] = frame(doc="Z, base frame R_0 in the reference frame R_f; [8.5]")
     E: tuple[tuple[float, ...], ...] = frame(doc="E, tool frame R_E in the platform's frame R_m; [8.5]")
-    leg_limits: tuple[float, float] = length(
-        (0.0, math.inf), minimum=None, bounded=False, doc="shortest and longest leg; not in the chapter"
-    )
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -59,9 +57,6 @@ class GoughStewartGeometry(GeometryRecord):
             rigid = np.allclose(rotation @ rotation.T, np.eye(3), rtol=0.0, atol=_RIGID) and np.linalg.det(rotation) > 0
             if not rigid or np.any(matrix[3] != (0.0, 0.0, 0.0, 1.0)):
                 raise self._invalid(name, getattr(self, name), "a rotation and a translation above (0, 0, 0, 1)")
-        low, high = self.leg_limits
-        if not 0.0 <= low < high:
-            raise self._invalid("leg_limits", self.leg_limits, "0 <= shortest < longest")
         reason = why_singular(np.array(self.base_points), np.array(self.platform_points))
         if reason is not None:
             raise SingularArchitecture(reason)
@@ -140,6 +135,25 @@ class GoughStewartGeometry(GeometryRecord):
         result = np.eye(4)
         result[:3] = np.column_stack([x, np.cross(z, x), z, points[0]])
         return result
+
+
+@dataclass(frozen=True)
+class GoughStewartRanges(RodRanges):
+    """Legs of two stages, joints that tilt up to 52 degrees: an assumption of this project, not a datasheet.
+
+    Attributes:
+        rest: the tool point [m] at which, with the platform not turned, each leg lies along the axes of its two joints.
+    """
+
+    joints: Pair | tuple[Pair, ...] = (0.4, 1.0)
+    passive: Pair = (0.9, 0.9)
+    rest: tuple[float, float, float] = (0.0, 0.0, 0.6)
+
+    def check(self, count: int) -> None:
+        """As for `RodRanges`; and `rest` is a point."""
+        super().check(count)
+        if np.shape(self.rest) != (3,) or not np.isfinite(self.rest).all():
+            raise InvalidValue("GoughStewartRanges rest", self.rest, "three finite coordinates [m]")
 
 
 class SingularArchitecture(InvalidGeometry):

@@ -24,7 +24,7 @@ from kinematics.mechanism import Array, Build
 from kinematics.model import Model
 from kinematics.polynomial import real_roots
 from kinematics.rods import RodLevel
-from kinematics.rotary_limbs import Limbs, RotaryLimbs, columns, radial_directions
+from kinematics.rotary_limbs import ArmRanges, Limbs, RotaryLimbs, columns, radial_directions
 from kinematics.twins import twins_of_halves
 
 _UPPER = (0.0, 0.0, 1.0, 1.0)  # which limbs hold the plate that rides on the screw: (7), (8)
@@ -84,6 +84,7 @@ class Heli4(RotaryLimbs, RodLevel):
 
     Geometry = Heli4Geometry
     Inertia = Heli4Inertia
+    Ranges = ArmRanges
     geometry: Heli4Geometry
     inertia: Heli4Inertia
     pose_names = ("x", "y", "z", "theta")
@@ -93,6 +94,7 @@ class Heli4(RotaryLimbs, RodLevel):
     counts_turns = True
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.7, 0.0)
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=150.0)
+    margins = (*RodLevel.margins, "passive_joint")
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta", "epsilon_1", "epsilon_2")
     # (51): sums and differences of a limb's two rods; the plates' own rotations in place of the relative ones.
     row_combinations = np.vstack([np.kron(np.eye(4), [0.5, 0.5]), np.kron(np.eye(4), [1.0, -1.0])])

@@ -23,7 +23,7 @@ from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array, Build
 from kinematics.model import Model
-from kinematics.rotary_limbs import ArmInertia, Limbs, RotaryLimbs, columns, radial_directions
+from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, columns, radial_directions
 from kinematics.twins import twins
 
 _AROUND = [*range(6), 0]
@@ -85,6 +85,7 @@ class Hexa(RotaryLimbs):
 
     Geometry = HexaGeometry
     Inertia = HexaInertia
+    Ranges = ArmRanges
     geometry: HexaGeometry
     inertia: HexaInertia
     pose_names = GoughStewart.pose_names
@@ -93,6 +94,7 @@ class Hexa(RotaryLimbs):
     rotations = GoughStewart.rotations
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.55, 0.0, 0.0, 0.0)
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=1.0, force=50.0)
+    margins = (*RotaryLimbs.margins, "passive_joint")
     pose_rate_map = staticmethod(GoughStewart.pose_rate_map)
 
     @property
@@ -121,6 +123,11 @@ class Hexa(RotaryLimbs):
     def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """(3, 6) B_i."""
         return columns(pose[:3], 6) + GoughStewart.rotation(pose) @ ca.reshape(g.platform_points, 3, 6)
+
+    @classmethod
+    def platform_axes(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """Parallel to the arms' axes where the platform is not turned."""
+        return GoughStewart.rotation(pose) @ cls.limbs(g).axes()
 
     @staticmethod
     def _as_hexapod(joints: ca.SX, g: SimpleNamespace) -> SimpleNamespace:

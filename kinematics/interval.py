@@ -5,9 +5,10 @@ last place outward is enough for them. Sine, cosine and arctangent come from the
 which promise no error bound: here they are ASSUMED to be within four units in the last place of 1; tests hold them
 against an arbitrary-precision library.
 
-An operation that is not defined on all of a box (a root of something negative, a division by zero), or that has no
-rule, gives (-inf, inf); an operation on an operand with an infinite bound gives an infinite bound. So finite bounds of
-an output tell that everything it is made of is defined on the whole box, and nothing is ever proved from the rest.
+An operation that is not defined on all of a box (a root of something negative, a division by zero, an arctangent across
+its cut), or that has no rule, gives (-inf, inf); an operation on an operand with an infinite bound gives an infinite
+bound, but for the branch that a condition leaves aside. So finite bounds of an output tell that all that it is made of
+is defined on the whole box, and nothing is ever proved from the rest. A condition that is open on a box is [0, 1].
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ _LIBRARY = 2.0**-50  # what sine, cosine and arctangent may be off by, relative 
 (CONST, INPUT, OUTPUT, ASSIGN, ADD, SUB, MUL, DIV, NEG, SQRT, SQ, TWICE, INV, SIN, COS, ATAN2, FABS, FMIN, FMAX) = (
     int(Op(k)) for k in range(19)
 )
-SIGN = int(Op.SIGN)
+SIGN, LT, LE, NOT, IF_ELSE_ZERO = (int(Op(k)) for k in range(26, 31))
 
 
 def enclose(program: BoxProgram, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -149,6 +150,8 @@ def _out(low, high, tiny):  # type: ignore[no-untyped-def]
 @numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
 def _rare(code, a, b, c, d):  # type: ignore[no-untyped-def]
     """Operations with conditions, one box at a time."""
+    if code == IF_ELSE_ZERO:
+        return _branch(a, b, c, d)
     total = a + b + c + d
     if total - total != 0.0:  # an infinite bound: something undefined or overflown went in
         return -np.inf, np.inf
@@ -173,6 +176,12 @@ def _rare(code, a, b, c, d):  # type: ignore[no-untyped-def]
         return max(a, c), max(b, d)
     if code == SIGN:
         return np.sign(a), np.sign(b)
+    if code == LT:
+        return 1.0 if b < c else 0.0, 1.0 if a < d else 0.0
+    if code == LE:
+        return 1.0 if b <= c else 0.0, 1.0 if a <= d else 0.0
+    if code == NOT:
+        return 1.0 if a == b == 0.0 else 0.0, 1.0 if a <= 0.0 <= b else 0.0
     if code == SIN:
         return (0.0, 0.0) if a == b == 0.0 else _cosine(a - 0.5 * np.pi, b - 0.5 * np.pi)
     if code == COS:
@@ -180,6 +189,18 @@ def _rare(code, a, b, c, d):  # type: ignore[no-untyped-def]
     if code == ATAN2:
         return _arctangent(a, b, c, d)
     return -np.inf, np.inf
+
+
+@numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
+def _branch(a, b, c, d):  # type: ignore[no-untyped-def]
+    """[c, d] where the condition [a, b] is not 0, and 0 where it is; both where it is open."""
+    if not (np.isfinite(a) and np.isfinite(b)):
+        return -np.inf, np.inf
+    if a == b == 0.0:
+        return 0.0, 0.0
+    if a <= 0.0 <= b:
+        return min(c, 0.0), max(d, 0.0)
+    return c, d
 
 
 @numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
@@ -214,9 +235,12 @@ def _cosine(a, b):  # type: ignore[no-untyped-def]
 
 @numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
 def _arctangent(a, b, c, d):  # type: ignore[no-untyped-def]
-    """atan2 of y in [a, b], x in [c, d]: extremes at the corners unless the box meets the cut or the origin."""
+    """atan2 of y in [a, b], x in [c, d]: extremes at the corners unless the box meets the cut or the origin.
+
+    There it jumps, and bounds would let a slope speak for both sides.
+    """
     if c <= 0.0 and a <= 0.0 <= b:
-        return -np.pi - 4.0 * _EPS, np.pi + 4.0 * _EPS
+        return -np.inf, np.inf
     p, q, u, v = np.arctan2(a, c), np.arctan2(a, d), np.arctan2(b, c), np.arctan2(b, d)
     low, high = min(min(p, q), min(u, v)), max(max(p, q), max(u, v))
     return low - _LIBRARY * 4.0, high + _LIBRARY * 4.0

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from kinematics.block_program import BlockProgram
 from kinematics.bodies import InertiaRecord
+from kinematics.clearance import segment_gap_symbolic
 from kinematics.definition import Definition
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.geometry import GeometryRecord
@@ -24,6 +26,7 @@ from kinematics.indices import (
 from kinematics.interpreter import bulk, evaluate
 from kinematics.linear import volume
 from kinematics.model import Model, model_of
+from kinematics.ranges import Pair, PassiveJoint, joint_travel
 
 Array = np.ndarray
 Build = tuple[list[ca.SX], list[ca.SX]]  # inputs and outputs of a program
@@ -36,13 +39,21 @@ class Mechanism(Definition):
     Every public method takes poses (..., n) or joints (..., m) with any leading shape.
     """
 
-    def __init__(self, geometry: GeometryRecord | None = None, inertia: InertiaRecord | None = None) -> None:
+    ranges: Any
+
+    def __init__(
+        self, geometry: GeometryRecord | None = None, inertia: InertiaRecord | None = None, ranges: Any = None
+    ) -> None:
         self.geometry = geometry if geometry is not None else self.Geometry()
         if not isinstance(self.geometry, self.Geometry):
             raise InvalidValue(f"{type(self).__name__} geometry", geometry, f"a {self.Geometry.__name__}")
         self.inertia = inertia if inertia is not None else self.Inertia()
         if not isinstance(self.inertia, self.Inertia):
             raise InvalidValue(f"{type(self).__name__} inertia", inertia, f"a {self.Inertia.__name__}")
+        self.ranges = ranges if ranges is not None else self.Ranges()
+        if not isinstance(self.ranges, self.Ranges):
+            raise InvalidValue(f"{type(self).__name__} ranges", ranges, f"a {self.Ranges.__name__}")
+        self.ranges.check(len(self.joint_names))
         self._programs: dict[object, BlockProgram] = {}
 
     def __repr__(self) -> str:
@@ -138,8 +149,9 @@ class Mechanism(Definition):
     ) -> Array:
         """(...,) a named margin, the larger the better: the smallest of its components at each pose.
 
-        reach [m]; fvi; J_q (the worst |J_q,i| over its scale), det_J_q, det_J_x (normalised, in [0, 1]), and what the
-        mechanism adds. NaN where the pose is out of reach (but for reach itself).
+        reach [m]; joint_travel, the room to the nearest joint limit in that joint's unit, and passive_joint [rad], that
+        at the rods' ends; fvi; J_q (the worst |J_q,i| over its scale), det_J_q, det_J_x (normalised, in [0, 1]), and
+        what the mechanism adds. NaN where the pose is out of reach (but for reach itself).
         """
         bounds = bounds or self.fvi_bounds
         length = self._length(characteristic_length)
@@ -163,6 +175,12 @@ class Mechanism(Definition):
         model = self.model()
         if name == "reach":
             return self.reach(model.pose, model.g)
+        if name == "joint_travel":
+            return joint_travel(model.inverse, self.ranges.limits(len(self.joint_names)))
+        if name == "passive_joint":
+            return self.passive_rows(lambda joint, limits: joint.room(limits))
+        if name == "clearance":
+            return ca.vertcat(*(ca.norm_2(segment_gap_symbolic(one, two)) for one, two in self.segment_pairs()))
         if name == "fvi":
             return fvi_components(self._homogeneous(model, characteristic_length), bounds)
         q_scale, x_scale = self.scales(model.g)
@@ -175,6 +193,12 @@ class Mechanism(Definition):
         for i in range(normalised.shape[0]):
             result *= normalised[i]
         return result
+
+    def passive_rows(self, rows: Callable[[PassiveJoint, Pair], list[ca.SX]]) -> ca.SX:
+        """Expressions of every passive joint and the limits, in the symbols `pose` and `geometry`."""
+        model, limits = self.model(), self.ranges.passive
+        joints = self.passive_joints(model.pose, model.joints, model.g)
+        return model.at_pose(ca.vertcat(*(row for joint in joints for row in rows(joint, limits))))
 
     def polylines(self, pose: Array) -> dict[str, Array]:
         """Named polylines (k, 3) of the mechanism at one pose (n,), for drawing."""

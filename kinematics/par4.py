@@ -26,7 +26,7 @@ from kinematics.linear import determinant
 from kinematics.mechanism import Array, Build, Mechanism
 from kinematics.model import Model
 from kinematics.par4_forward import Halves, candidates
-from kinematics.rotary_limbs import ArmInertia, Limbs, RotaryLimbs, columns, radial_directions
+from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, columns, radial_directions
 from kinematics.twins import twins_of_halves
 
 _DEG = math.pi / 180.0
@@ -82,6 +82,7 @@ class Par4(RotaryLimbs):
 
     Geometry = Par4Geometry
     Inertia = Par4Inertia
+    Ranges = ArmRanges
     geometry: Par4Geometry
     inertia: Par4Inertia
     pose_names = ("x", "y", "z", "theta")
@@ -91,7 +92,7 @@ class Par4(RotaryLimbs):
     counts_turns = True  # of the bars, by the gear
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.8, 0.0)
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
-    margins = (*Mechanism.margins, "pi_joint")
+    margins = (*Mechanism.margins, "pi_joint", "passive_joint")
 
     @property
     def characteristic_length(self) -> float:

@@ -24,6 +24,7 @@ from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array, Mechanism
 from kinematics.model import Model
+from kinematics.ranges import Pair, PassiveJoint, RodRanges
 
 _E_Z = ca.DM([0, 0, 1])
 # Of the larger pitch. A rounding of a nut's height [m] turns theta by 2 pi / |p_1 - p_2| times as much [rad]: at this
@@ -81,6 +82,17 @@ class PeppermillInertia(InertiaRecord):
     tool: float = 6.0e-4
 
 
+@dataclass(frozen=True)
+class PeppermillRanges(RodRanges):
+    """Slides of 0.6 m and arms that turn 3 rad: an assumption of this project, the paper gives no limits.
+
+    `passive` limits what the elbows turn from a right angle, and the distal links' ends from upright.
+    """
+
+    joints: Pair | tuple[Pair, ...] = ((-0.3, 0.3), (-0.3, 0.3), (-1.2, 1.8), (0.4, 3.4))
+    passive: Pair = (1.2, 1.2)
+
+
 class Peppermill(Mechanism):
     """Pose [x, y, z, theta], joints d1, d2 and theta1, theta2, moved by the motors 1L, 1R, 2L, 2R.
 
@@ -91,6 +103,7 @@ class Peppermill(Mechanism):
 
     Geometry = PeppermillGeometry
     Inertia = PeppermillInertia
+    Ranges = PeppermillRanges
     geometry: PeppermillGeometry
     inertia: PeppermillInertia
     pose_names = ("x", "y", "z", "theta")
@@ -101,6 +114,7 @@ class Peppermill(Mechanism):
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.0, 0.0)
     # 750 W servos at 3000 rpm and three times their rated torque, asked for 2.5 m/s and 50 N: our assumption.
     fvi_bounds = FviBounds(joint_speed=314.0, joint_effort=7.2, speed=2.5, force=50.0)
+    margins = (*Mechanism.margins, "passive_joint")
 
     @property
     def characteristic_length(self) -> float:
@@ -212,6 +226,17 @@ class Peppermill(Mechanism):
         return modes[np.sort(first)]
 
     # Masses and drawing.
+
+    def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:
+        """The two R of each CRR limb: the elbow, at lambda_i, and that on the nut, which stays upright.
+
+        The elbow rests at a right angle; the distal link at the nut where it points up (limb 1) or down (limb 2).
+        """
+        _, _, elbows, nuts = self.points(pose, joints, g)
+        theta, rods = joints[2:], nuts - elbows
+        proximal, up = limbs.in_space(limbs.Plane(ca.cos(theta), ca.sin(theta))), ca.SX(_E_Z)
+        first = [PassiveJoint(proximal[:, i], rods[:, i], g.distal_lengths[i], 0) for i in range(2)]
+        return first + [PassiveJoint((up, -up)[i], rods[:, i], g.distal_lengths[i], 1, swivels=False) for i in range(2)]
 
     @staticmethod
     def points(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:

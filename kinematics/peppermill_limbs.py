@@ -34,12 +34,18 @@ def target(pose: ca.SX, g: SimpleNamespace) -> Plane:
 def _triangle(q: Plane, g: SimpleNamespace) -> tuple[ca.SX, ca.SX, ca.SX]:
     """|q|^2, -e_3 of (26), sqrt(e_1^2 + e_2^2 - e_3^2) as a product that keeps its digits near straight limbs.
 
-    Links as long as each other, folded onto the drive axis, turn freely: the angle is then one of many, at reach 0.
+    The root is NaN where the angle is free.
     """
     near, far = g.proximal_lengths, g.distal_lengths
     square = q.along_x**2 + q.along_y**2
     root = ca.sqrt(((near + far) ** 2 - square) * (square - (near - far) ** 2)) / (2 * near)
+    root = ca.if_else(_determined(square, g), root, ca.DM.nan(2))
     return square, (square + near**2 - far**2) / (2 * near), root
+
+
+def _determined(square: ca.SX, g: SimpleNamespace) -> ca.SX:
+    """(2,) whether |q_i|^2 determines theta_i: links as long as each other, folded onto the drive axis, turn freely."""
+    return ca.fmax(square, ca.fabs(g.proximal_lengths - g.distal_lengths)) > 0
 
 
 def angles(pose: ca.SX, elbows: tuple[int, int], g: SimpleNamespace) -> ca.SX:
@@ -62,11 +68,12 @@ def cosines_and_sines(pose: ca.SX, elbows: tuple[int, int], g: SimpleNamespace) 
 
 
 def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-    """(2,) how far |q_i| is inside [|r_i - l_i|, r_i + l_i] [m]; 0 where equal links on the drive axis turn freely."""
+    """(2,) how far |q_i| is inside [|r_i - l_i|, r_i + l_i] [m]; NaN where any theta_i closes."""
     q = target(pose, g)
     square = q.along_x**2 + q.along_y**2
     distance, near, far = ca.sqrt(square), g.proximal_lengths, g.distal_lengths
-    return ca.fmin(near + far - distance, distance - ca.fabs(near - far))
+    margin = ca.fmin(near + far - distance, distance - ca.fabs(near - far))
+    return ca.if_else(_determined(square, g), margin, ca.DM.nan(2))
 
 
 def distal(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> Plane:

@@ -13,6 +13,7 @@ from kinematics.geometry import TURN, angle, length
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Array
 from kinematics.planar import AZIMUTHS, Planar, PlanarGeometry, PlanarInertia
+from kinematics.ranges import JointRanges, Pair
 from kinematics.rotary_limbs import radial_directions
 
 
@@ -30,6 +31,13 @@ class Planar3PRRGeometry(PlanarGeometry):
         return [aside, self._size() * ahead.real, self._size() * ahead.imag, np.array(self.rod_lengths)]
 
 
+@dataclass(frozen=True)
+class Planar3PRRRanges(JointRanges):
+    """Rails, in metres: an assumption of this project. All pivots turn freely."""
+
+    joints: Pair | tuple[Pair, ...] = (-0.8, 0.2)
+
+
 class Planar3PRR(Planar):
     """Pose [x, y, theta], joints q1..q3, the sliders' travels from A_i along their rails.
 
@@ -38,6 +46,7 @@ class Planar3PRR(Planar):
 
     Geometry = Planar3PRRGeometry
     Inertia = PlanarInertia
+    Ranges = Planar3PRRRanges
     geometry: Planar3PRRGeometry
     joint_units = ("m",) * 3
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=200.0, speed=0.3, force=50.0)

@@ -11,6 +11,7 @@ from kinematics.bodies import Bodies, Particle, Rotor
 from kinematics.geometry import TURN, length
 from kinematics.indices import FviBounds
 from kinematics.planar import Planar, PlanarGeometry, PlanarInertia, triangle
+from kinematics.ranges import JointRanges, Pair
 
 
 @dataclass(frozen=True)
@@ -32,11 +33,19 @@ class Planar3RPRGeometry(PlanarGeometry):
             raise self._invalid("base_points", self.base_points, f"points that do not all coincide: {reason}")
 
 
+@dataclass(frozen=True)
+class Planar3RPRRanges(JointRanges):
+    """Cylinders, in metres: an assumption of this project. All pivots turn freely."""
+
+    joints: Pair | tuple[Pair, ...] = (0.2, 0.9)
+
+
 class Planar3RPR(Planar):
     """Pose [x, y, theta], joints q1..q3, the leg lengths |A_i B_i|: prismatic drives between passive pivots."""
 
     Geometry = Planar3RPRGeometry
     Inertia = PlanarInertia
+    Ranges = Planar3RPRRanges
     geometry: Planar3RPRGeometry
     joint_units = ("m",) * 3
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=200.0, speed=0.3, force=50.0)

@@ -13,6 +13,7 @@ from kinematics.geometry import angle, length
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Array
 from kinematics.planar import AZIMUTHS, Planar, PlanarGeometry, PlanarInertia
+from kinematics.ranges import JointRanges, Pair
 from kinematics.rotary_limbs import Limbs, RotaryLimbs, radial_directions
 
 
@@ -44,6 +45,13 @@ class Planar3RRRInertia(PlanarInertia):
     arm_factor: float = 4 / 3
 
 
+@dataclass(frozen=True)
+class Planar3RRRRanges(JointRanges):
+    """Arms between outward and inward: an assumption of this project. All pivots turn freely."""
+
+    joints: Pair | tuple[Pair, ...] = (0.0, 3.1)
+
+
 class Planar3RRR(Planar, RotaryLimbs):
     """Pose [x, y, theta], joints q1..q3, the arms' angles from `zero_angles`.
 
@@ -53,6 +61,7 @@ class Planar3RRR(Planar, RotaryLimbs):
 
     Geometry = Planar3RRRGeometry
     Inertia = Planar3RRRInertia
+    Ranges = Planar3RRRRanges
     geometry: Planar3RRRGeometry
     joint_units = ("rad",) * 3
     fvi_bounds = FviBounds(joint_speed=6.0, joint_effort=10.0, speed=0.3, force=10.0)

@@ -146,6 +146,11 @@ _SYMBOLIC: dict[Op, Callable[..., Any]] = {
     Op.FABS: lambda a, _: ca.fabs(a),
     Op.FMIN: ca.fmin,
     Op.FMAX: ca.fmax,
+    Op.SIGN: lambda a, _: ca.sign(a),
+    Op.LT: ca.lt,
+    Op.LE: ca.le,
+    Op.NOT: lambda a, _: ca.logic_not(a),
+    Op.IF_ELSE_ZERO: lambda a, b: ca.if_else(a, b, 0),
 }
 
 

@@ -25,10 +25,11 @@ from kinematics.interpreter import evaluate
 from kinematics.linear import volume
 from kinematics.mechanism import Array
 from kinematics.model import Model
+from kinematics.ranges import PassiveJoint
 from kinematics.redundancy import BestFit, EncoderCheck, check_encoders, least_squares
-from kinematics.redundant_3t1r_clearance import arm_distances, arm_distances_symbolic
+from kinematics.redundant_3t1r_clearance import arm_distances, arms_apart
 from kinematics.redundant_3t1r_forward import candidate_build
-from kinematics.redundant_3t1r_geometry import Redundant3T1RGeometry, Redundant3T1RInertia
+from kinematics.redundant_3t1r_geometry import Redundant3T1RGeometry, Redundant3T1RInertia, Redundant3T1RRanges
 from kinematics.rods import RodLevel
 
 _LIMBS = 6
@@ -59,13 +60,15 @@ class Redundant3T1R(RodLevel):
 
     Geometry = Redundant3T1RGeometry
     Inertia = Redundant3T1RInertia
+    Ranges = Redundant3T1RRanges
     geometry: Redundant3T1RGeometry
     inertia: Redundant3T1RInertia
     pose_names = ("x", "y", "z", "theta")
     joint_names = ("x1", "x2", "x3", "x4", "x5", "x6")
     joint_units = ("m",) * _LIMBS
     rotations = (3,)
-    margins = (*RodLevel.margins, "clearance")
+    margins = (*RodLevel.margins, "passive_joint", "clearance")
+    mirrors = (("y", "theta"), ("z",))
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.0, 0.0)
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=1.0, speed=0.5, force=0.5)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta")
@@ -132,6 +135,16 @@ class Redundant3T1R(RodLevel):
         return ca.SX.ones(_LIMBS), ca.sqrt(48) * g.platform_length / 2
 
     # Rods, masses, drawing.
+
+    def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:
+        """Universal joints whose first pins stand along e_z at both ends, and so turn freely with the platform.
+
+        The paper has spherical joints or, for their limited angles, three revolute ones (section II); that an upright
+        pin comes first is an assumption of this project.
+        """
+        arms, lengths = self.platform_points(pose, g) - self.rail_points(joints, g), self.arm_lengths(g)
+        up = ca.SX([0, 0, 1])
+        return [PassiveJoint(up, arms[:, i], lengths[i], end) for end in (0, 1) for i in range(_LIMBS)]
 
     @staticmethod
     def rod_closure(pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
@@ -214,11 +227,9 @@ class Redundant3T1R(RodLevel):
         rails, platform = self._evaluate("arms", self._arm_ends, pose)
         return arm_distances(rails, platform, self.geometry.parallelogram_width if rods else 0.0)
 
-    def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
-        """Adds clearance [m]: the `arm_distances` between the arms' middle lines."""
-        if name == "clearance":
-            return arm_distances_symbolic(*self._arm_ends(self.model()))
-        return super().margin_components(name, bounds, characteristic_length)
+    def segment_pairs(self) -> list[tuple[ca.SX, ca.SX]]:
+        """The arms' middle lines at a pose, where two share no platform point: the clearance of `arm_distances`."""
+        return arms_apart(*self._arm_ends(self.model()))
 
     def arm_clearance(self, pose: Array, rods: bool = False) -> Array:
         """(...,) the smallest of `arm_distances` [m]; the arms' thickness is still to be taken off."""

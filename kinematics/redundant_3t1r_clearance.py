@@ -5,7 +5,7 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 
-from kinematics.clearance import segment_distance_symbolic, segment_distances
+from kinematics.clearance import segment_distances
 
 Array = np.ndarray
 
@@ -29,7 +29,7 @@ def arm_distances(rails: Array, platform: Array, width: float) -> dict[tuple[int
     }
 
 
-def arm_distances_symbolic(rails: ca.SX, platform: ca.SX) -> ca.SX:
-    """(12,) the same distances between the middle lines, from their ends (3, 6)."""
+def arms_apart(rails: ca.SX, platform: ca.SX) -> list[tuple[ca.SX, ca.SX]]:
+    """The same 12 pairs as middle lines (3, 2), ends in columns, from their ends (3, 6)."""
     arms = [ca.horzcat(rails[:, i], platform[:, i]) for i in range(6)]
-    return ca.vertcat(*(segment_distance_symbolic(arms[i], arms[j]) for i, j in _APART))
+    return [(arms[i], arms[j]) for i, j in _APART]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from kinematics.bodies import InertiaRecord
 from kinematics.geometry import GeometryRecord, length
+from kinematics.ranges import Pair, RodRanges
 
 _LEAST_SPREAD = 1e-4  # of rails, over the arms' length: the forward model loses as many digits as this has zeros
 
@@ -55,3 +56,11 @@ class Redundant3T1RInertia(InertiaRecord):
     rod_mass: float = 0.9
     platform_mass: float = 3.0
     platform_inertia: float = 0.015
+
+
+@dataclass(frozen=True)
+class Redundant3T1RRanges(RodRanges):
+    """Rails of 3 m, and forks that lean up to 46 degrees: an assumption of this project, the paper gives no limits."""
+
+    joints: Pair | tuple[Pair, ...] = (-2.0, 1.0)
+    passive: Pair = (0.8, 0.8)

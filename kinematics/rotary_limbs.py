@@ -17,6 +17,7 @@ import casadi as ca
 
 from kinematics.bodies import Bodies, InertiaRecord, Particle, Rod, Rotor
 from kinematics.mechanism import Mechanism
+from kinematics.ranges import Pair, PassiveJoint, RodRanges
 
 
 class Limbs(NamedTuple):
@@ -62,11 +63,14 @@ class Limbs(NamedTuple):
         square = m * m + n * n
         return (m * right - n * root) / square, (n * right + m * root) / square
 
+    def axes(self) -> ca.SX:
+        """(3, m) unit directions about which the arms turn, and along which their rods' joints lie."""
+        return ca.horzcat(*(ca.cross(self.zero[:, i], self.quarter[:, i]) for i in range(self.zero.shape[1])))
+
     def reach(self, platform: ca.SX) -> ca.SX:
         """(m,) how much longer or shorter each rod could be before B_i left the arm's circle [m]."""
         to_actuator = self.actuators - platform
-        axis = ca.horzcat(*(ca.cross(self.zero[:, i], self.quarter[:, i]) for i in range(self.zero.shape[1])))
-        across, outward, along = (ca.sum1(to_actuator * d).T for d in (axis, self.quarter, self.zero))
+        across, outward, along = (ca.sum1(to_actuator * d).T for d in (self.axes(), self.quarter, self.zero))
         distance = ca.sqrt(outward**2 + along**2)
         nearest = ca.sqrt((distance - self.arm) ** 2 + across**2)
         farthest = ca.sqrt((distance + self.arm) ** 2 + across**2)
@@ -102,6 +106,16 @@ class ArmInertia(InertiaRecord):
     rod_mass: float = 0.26
 
 
+@dataclass(frozen=True)
+class ArmRanges(RodRanges):
+    """Arms in vertical planes and ball joints of a Delta's kind: an assumption of this project, not a datasheet.
+
+    Arms from straight up to 38 degrees past straight down; rods up to 57 degrees out of their arms' planes.
+    """
+
+    joints: Pair | tuple[Pair, ...] = (0.0, 3.8)
+
+
 class RotaryLimbs(Mechanism):
     """A mechanism whose m limbs are all of this kind: it states where they are and which points they hold."""
 
@@ -121,6 +135,24 @@ class RotaryLimbs(Mechanism):
     def rods(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
         """(3, m) from B_i to A_i."""
         return cls.limbs(g).elbows(joints) - cls.platform_points(pose, g)
+
+    def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:
+        """Ball joints whose studs lie along the arm's axis, on the arm and on the platform.
+
+        The FlexPicker's, whose forearms Heli4 has: a rod swings freely in the arm's plane and leans out of it.
+        """
+        limbs, turned = self.limbs(g), self.platform_axes(pose, g)
+        rods, lengths = self.rods(pose, joints, g), ca.repmat(limbs.rod, joints.numel() // limbs.rod.numel(), 1)
+        return [
+            PassiveJoint(axes[:, i], rods[:, i], lengths[i], end)
+            for end, axes in enumerate((limbs.axes(), turned))
+            for i in range(joints.numel())
+        ]
+
+    @classmethod
+    def platform_axes(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:  # noqa: ARG003
+        """(3, m) unit directions of the studs on the platform, which here keeps its orientation."""
+        return cls.limbs(g).axes()
 
     @classmethod
     def closure(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:

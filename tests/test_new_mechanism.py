@@ -31,6 +31,8 @@ def test_the_page_names_every_hook():
     hooks = {name for name in (*Mechanism.__abstractmethods__, *Definition.__annotations__) if name != "margins"}
     optional = {
         "drives",
+        "passive_joints",
+        "segment_pairs",
         "actuator_names",
         "actuator_units",
         "joint_cosines_and_sines",

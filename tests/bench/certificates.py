@@ -33,6 +33,13 @@ CASES: list[tuple[Mechanism, Region, str, float]] = [
     (GoughStewart(), HEXAPOD, "det_J_x", 1e-6),
     (Peppermill(), MILL, "det_J_x", 1e-6),
     (Peppermill(), MILL, "J_q", 1e-6),
+    (Heli4(), CYLINDER, "joint_travel", 0.16),
+    (Heli4(), CYLINDER, "passive_joint", 0.32),
+    (Redundant3T1R(), HALF_TURN, "clearance", 0.062),
+    (GoughStewart(), HEXAPOD, "joint_travel", 0.04),
+    (GoughStewart(), HEXAPOD, "passive_joint", 0.19),
+    (Peppermill(), MILL, "joint_travel", 0.095),
+    (Peppermill(), MILL, "passive_joint", 0.155),
 ]
 GROWTH = [CASES[0], CASES[4]]
 GAPS = (0.1, 0.03, 0.01, 0.003, 0.001)

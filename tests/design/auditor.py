@@ -7,6 +7,7 @@ import numpy as np
 
 from design import Certificate
 from design.claims import Numbers, claims_of
+from design.symmetry import one_side
 from design.tree import PROVED, leaves, root
 from kinematics import Mechanism
 from kinematics.program import Program, replay
@@ -34,7 +35,7 @@ class Auditor:
         self._fixed = [arb(v) for v in robot.geometry.vector()]
         self._numbers = [arb(v) for v in Numbers.values(c.at_least, c.bounds, c.characteristic_length)]
         self._count = claims.expressions.numel()
-        self._matrix = claims.matrix
+        self._matrix, self._chosen = claims.matrix, claims.chosen
         if claims.matrix is not None:
             self._at = ca.Function("matrix", [model.pose, model.geometry, numbers.vector], [claims.matrix])
 
@@ -42,11 +43,15 @@ class Auditor:
         """Some of the proved boxes at random."""
         found = [
             np.stack([low[code == PROVED], high[code == PROVED]], axis=1)
-            for code, low, high in leaves(self.certificate.codes, *root(self.certificate.region, self.names))
+            for code, low, high in leaves(self.certificate.codes, *self._root())
         ]
         table = np.concatenate(found)
         chosen = rng.choice(len(table), size=min(count, len(table)), replace=False)
         return [(box[0], box[1]) for box in table[chosen]]
+
+    def _root(self) -> tuple[Array, Array]:
+        c = self.certificate
+        return one_side(*root(c.region, self.names), c.mirrors, self.names)
 
     def holds_at(self, pose: Array) -> bool:
         """Whether every component of the margin, as the mechanism defines it, reaches the bound at a pose."""
@@ -86,8 +91,7 @@ class Auditor:
             self.certificate.at_least, self.certificate.bounds, self.certificate.characteristic_length
         )
         matrix = np.array(self._at(middle, self.robot.geometry.vector(), numbers))
-        right = np.linalg.inv(matrix if matrix.shape[0] == matrix.shape[1] else np.linalg.qr(matrix, mode="r"))
-        return [arb(float(v)) for v in right.T.ravel()]
+        return [arb(float(v)) for v in self._chosen(matrix[None])[0].T.ravel()]
 
 
 def _program(symbols: list[ca.SX], output: ca.SX) -> Program:

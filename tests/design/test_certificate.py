@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 
+import casadi as ca
 import numpy as np
 import pytest
 
 from design import Box, Cylinder, InvalidRegion, Region, best_bound, certify, worst_poses
-from kinematics import GoughStewart, Heli4, Mechanism, Peppermill, Redundant3T1R, threads
+from kinematics import FviBounds, GoughStewart, Heli4, Mechanism, Peppermill, Redundant3T1R, threads
 from kinematics.errors import InvalidValue
 
 PI = math.pi
@@ -229,3 +230,84 @@ def test_wrong_questions_are_named() -> None:
         certify(Heli4(), CYLINDER, "fvi", at_least=0.1, characteristic_length=0.0)
     with pytest.raises(InvalidValue, match="tolerance"):
         best_bound(Heli4(), CYLINDER, "J_q", 0.0)
+
+
+class Jumping(Heli4):
+    """With margins that jump, or have a kink, where x is 0.1."""
+
+    margins = ("reach", "branch", "sign", "turn", "kink")
+
+    def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
+        """Around 0.1 they are flat or lead upward, so that a slope alone would prove what is false beyond."""
+        x = self.model().pose[0] - 0.1
+        margins = {
+            "branch": ca.if_else(x < 0.0, 1.0 + x, -1.0 + x),
+            "sign": 2.0 - ca.sign(x) * (3.0 + x),
+            "turn": 1.0 + ca.atan2(x, x - 1.0),  # -> 1 + pi above the cut, 1 - pi below
+            "kink": ca.fabs(x) + 0.5,
+        }
+        return margins[name] if name in margins else super().margin_components(name, bounds, characteristic_length)
+
+
+@pytest.mark.parametrize("margin", ["branch", "sign", "turn"])
+def test_no_slope_speaks_for_the_far_side_of_a_jump(margin: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("design.certificate.first_failing", lambda *_: None)
+    good = (0.11, 0.2) if margin == "turn" else (-0.02, 0.09)
+    across, aside = (Box(x=x, y=0.0, z=-0.7, theta=0.0) for x in ((-0.02, 0.2), good))
+    assert certify(Jumping(), across, margin, at_least=0.5, most_boxes=5_000).status == "undecided"
+    assert certify(Jumping(), aside, margin, at_least=0.5).status == "proved"
+
+
+def test_a_kink_is_no_jump() -> None:
+    found = certify(Jumping(), Box(x=(-0.02, 0.2), y=0.0, z=-0.7, theta=0.0), "kink", at_least=0.4999)
+    assert found.status == "proved"
+    assert found.boxes < 50
+
+
+def test_equal_links_are_proved_up_to_where_they_fold_and_never_beyond() -> None:
+    robot = Peppermill(Peppermill.Geometry(proximal_lengths=(0.6, 0.6), distal_lengths=(0.6, 0.6)))
+    fixed = {"x": 0.0, "y": 0.0, "theta": 0.0}
+    near, onto = (Box(z=(0.0, top), **fixed) for top in (0.49, robot.geometry.half_distance))
+    for margin in ("reach", "J_q"):
+        assert certify(robot, near, margin, at_least=1e-3).status == "proved"
+        assert certify(robot, onto, margin, at_least=-1.0, most_boxes=3_000).status != "proved"
+
+
+@pytest.mark.parametrize(
+    ("robot", "region", "margin"),
+    [
+        (Heli4(), CYLINDER, "joint_travel"),
+        (Heli4(), CYLINDER, "passive_joint"),
+        (Redundant3T1R(), YZ, "clearance"),
+        (Redundant3T1R(), YZ, "joint_travel"),
+        (Redundant3T1R(), YZ, "passive_joint"),
+        (GoughStewart(), HEXAPOD, "joint_travel"),
+        (GoughStewart(), HEXAPOD, "passive_joint"),
+        (Peppermill(), SCREWS, "joint_travel"),
+        (Peppermill(), SCREWS, "passive_joint"),
+    ],
+)
+def test_room_is_proved_close_to_the_worst_found_and_refuted_just_above(
+    robot: Mechanism, region: Region, margin: str
+) -> None:
+    worst = worst_poses(robot, region, margin, about=20_000).value
+    assert worst > 0.0
+    assert certify(robot, region, margin, at_least=0.98 * worst).status == "proved"
+    assert certify(robot, region, margin, at_least=1.001 * worst).status == "refuted"
+
+
+def test_a_bound_beyond_the_whole_range_is_never_proved(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The sine and cosine of an angle below 0 would allow what the angle does not."""
+    monkeypatch.setattr("design.certificate.first_failing", lambda *_: None)
+    for robot, region in ((Heli4(), PART), (GoughStewart(), HEXAPOD)):
+        for beyond in (0.1, 2 * math.pi):
+            bound = max(robot.ranges.passive) + beyond
+            assert certify(robot, region, "passive_joint", at_least=bound, most_boxes=500).status == "undecided"
+
+
+def test_arms_that_touch_are_never_proved_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("design.certificate.first_failing", lambda *_: None)
+    touching = Box(x=0.0, y=(0.3, 0.75), z=(-0.3, -0.15), theta=(-0.3, 0.3))
+    assert worst_poses(Redundant3T1R(), touching, "clearance", about=20_000).value < 1e-3
+    for bound in (0.0, 0.002):
+        assert certify(Redundant3T1R(), touching, "clearance", at_least=bound, most_boxes=4_000).status == "undecided"

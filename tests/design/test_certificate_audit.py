@@ -31,6 +31,7 @@ from tests.design.auditor import Auditor
 PI = math.pi
 CYLINDER = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-PI, PI))
 YZ = Box(x=0.0, y=(0.0, 0.3), z=(0.1, 0.3), theta=(-PI / 2, PI / 2))
+HALF_TURN = Box(x=0.0, y=(-0.3, 0.3), z=(-0.3, 0.3), theta=(-PI / 2, PI / 2))
 HEXAPOD = Box(x=(-0.1, 0.1), y=(-0.1, 0.1), z=(0.5, 0.7), roll=(-0.2, 0.2), pitch=(-0.2, 0.2), yaw=(-0.2, 0.2))
 SCREWS = Box(x=(-0.2, 0.2), y=(-0.2, 0.2), z=(-0.05, 0.05), theta=(-2 * PI, 2 * PI))
 CLAIMS: list[tuple[Mechanism, Region, str, float, int]] = [
@@ -43,6 +44,14 @@ CLAIMS: list[tuple[Mechanism, Region, str, float, int]] = [
     (Peppermill(), SCREWS, "det_J_x", 1e-6, 30),
     (Peppermill(), SCREWS, "J_q", 1e-6, 30),
     (GoughStewart(), HEXAPOD, "det_J_x", 1e-6, 4),
+    (Heli4(), CYLINDER, "joint_travel", 0.165, 30),
+    (Heli4(), CYLINDER, "passive_joint", 0.32, 30),
+    (Redundant3T1R(), HALF_TURN, "clearance", 0.062, 30),
+    (Redundant3T1R(), Box(x=0.0, y=(-0.2, 0.2), z=(0.0, 0.1), theta=(-PI / 2, PI / 2)), "passive_joint", 0.5, 1),
+    (GoughStewart(), HEXAPOD, "joint_travel", 0.04, 10),
+    (GoughStewart(), HEXAPOD, "passive_joint", 0.19, 4),
+    (Peppermill(), SCREWS, "joint_travel", 0.095, 30),
+    (Peppermill(), SCREWS, "passive_joint", 0.155, 30),
 ]
 
 
@@ -56,7 +65,7 @@ def test_a_certificate_stands_its_replay_and_its_audit(
 ) -> None:
     found = certify(robot, region, margin, at_least=at_least)
     assert found.status == "proved"
-    assert 0 < replay(found, robot, region=region, margin=margin, at_least=at_least) < found.boxes
+    assert 0 < replay(found, robot, region=region, margin=margin, at_least=at_least) <= found.boxes
     auditor, rng = Auditor(found, robot), np.random.default_rng(23)
     for low, high in auditor.boxes(rng, sample):
         assert auditor.proves(low, high), f"seed 23: {low}, {high}"
@@ -89,7 +98,17 @@ def test_a_file_keeps_every_bit(tmp_path: Path) -> None:
     save_certificate(_proved(), path)
     read = load_certificate(path)
     assert replay(read, Heli4(), region=CYLINDER, margin="J_q", at_least=0.4) > 0
-    for name in ("mechanism", "digest", "margin", "at_least", "bounds", "characteristic_length", "version", "boxes"):
+    for name in (
+        "mechanism",
+        "digest",
+        "ranges",
+        "margin",
+        "at_least",
+        "bounds",
+        "characteristic_length",
+        "version",
+        "boxes",
+    ):
         assert getattr(read, name) == getattr(_proved(), name)
     assert repr(read.region) == repr(CYLINDER)
     assert (read.codes == _proved().codes).all()
@@ -109,6 +128,7 @@ def test_a_refutation_is_kept_and_replayed(tmp_path: Path) -> None:
     [
         ({"mechanism": "Peppermill"}, "mechanism"),
         ({"digest": "0" * 64}, "geometry"),
+        ({"ranges": "0" * 64}, "joint ranges"),
         ({"version": "0.0.0"}, "version"),
     ],
 )
@@ -119,6 +139,8 @@ def test_a_certificate_for_something_else_is_refused(change: dict[str, str], wha
 
 
 def test_another_geometry_region_margin_or_bound_is_refused() -> None:
+    with pytest.raises(OtherCertificate, match="joint ranges"):
+        replay(_proved(), Heli4(ranges=Heli4.Ranges(passive=(0.9, 1.0))))
     other = Heli4(Heli4.Geometry(arm_length=0.3510001))
     with pytest.raises(OtherCertificate, match="geometry"):
         replay(_proved(), other)

@@ -26,15 +26,14 @@ def test_the_claims_hold_exactly_where_the_margin_reaches_the_bound(robot: Mecha
     claims = claims_of(robot, margin, numbers, bound, home)
     symbols = [model.pose, ca.vec(claims.scaling), model.geometry, numbers.vector]
     function = bulk(ca.Function("claims", symbols, [claims.expressions]))
-    n = claims.scaling.shape[0]
-    scaling = rng.standard_normal((len(poses), n, n))
-    at = ca.Function("matrix", [model.pose, model.geometry, numbers.vector], [claims.matrix]) if n else None
     tail = Numbers.values(bound, robot.fvi_bounds, robot.characteristic_length)
-    if at is not None:
-        for k, pose in enumerate(poses):
-            matrix = np.array(at(pose, robot.geometry.vector(), tail))
-            right = matrix if matrix.shape[0] == n else np.linalg.qr(matrix, mode="r")
-            scaling[k] = np.linalg.inv(right) @ (np.eye(n) + 0.1 * rng.standard_normal((n, n)))
+    scaling = np.empty((len(poses), *claims.scaling.shape))
+    if claims.matrix is not None:
+        at = ca.Function("matrix", [model.pose, model.geometry, numbers.vector], [claims.matrix])
+        scaling = claims.chosen(np.stack([np.array(at(pose, robot.geometry.vector(), tail)) for pose in poses]))
+        n = scaling.shape[-1]  # where the way between segments is one of n columns, only its length is free
+        wild = 0.1 * rng.standard_normal((len(poses), n, n))
+        scaling = scaling @ (np.eye(n) * (1 + wild) if margin == "clearance" else np.eye(n) + wild)
     columns = [np.broadcast_to(v, (len(poses), len(v))) for v in (robot.geometry.vector(), np.array(tail))]
     (found,) = evaluate(function, poses, np.swapaxes(scaling, 1, 2).reshape(len(poses), -1), *columns)
     clear = np.abs(values - bound) > 1e-9 * max(1.0, bound)

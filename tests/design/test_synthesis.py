@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from design import Bounds, Cylinder, Requirement, SumLimit, SynthesisFailed, worst_poses
+from design import Bounds, Box, Cylinder, Requirement, SumLimit, SynthesisFailed, certify, worst_poses
 from design.nlp import Problem, active_sets, solve
 from design.synthesis import synthesise
-from kinematics import Heli4
+from kinematics import Heli4, Redundant3T1R
 
 REGION = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-math.pi, math.pi))
 ROBOT = Heli4()
@@ -147,3 +147,31 @@ def test_a_sum_over_tuples_holds_in_every_entry() -> None:
     asked = replace(problem(), robot=mill, sums=(limit,))
     sums = [mill.geometry.vector()[places].sum() for places in asked.summed(limit)]
     assert sums == pytest.approx([r + mill.geometry.half_distance for r in mill.geometry.proximal_lengths])
+
+
+def test_the_least_lean_is_that_of_the_longest_rod_that_reaches() -> None:
+    asked = replace(
+        problem(("rod_length", 0.6, 1.0), requirements=(Requirement("reach", 0.02),)), objective="passive_joint"
+    )
+    found = synthesise(asked, REGION, starts=1, about=20_000)
+    rod = found.robot.geometry.rod_length
+    assert found.after["passive_joint"].value == pytest.approx(1.0 - math.asin(0.5 / rod), abs=1e-3)
+    assert found.after["reach"].value == pytest.approx(0.02, abs=2e-4)
+
+
+def test_room_for_joints_and_arms_can_be_asked_for_and_is_then_certified() -> None:
+    robot = Redundant3T1R()
+    region = Box(x=0.0, y=(-0.3, 0.3), z=(-0.3, 0.3), theta=(-math.pi / 2, math.pi / 2))
+    wanted = {"clearance": 0.08, "passive_joint": 0.35, "joint_travel": 0.6}
+    bounds = (("middle_rail_y", -0.6, -0.3), ("outer_rail_z", 0.2, 0.5), ("platform_height", 0.1, 0.3))
+    asked = replace(
+        problem(requirements=tuple(Requirement(margin, least) for margin, least in wanted.items())),
+        robot=robot,
+        variables=tuple(Bounds(name, 0, low, high) for name, low, high in bounds),
+        fvi_bounds=robot.fvi_bounds,
+        characteristic_length=robot.characteristic_length,
+    )
+    assert worst_poses(robot, region, "clearance", about=ABOUT).value < wanted["clearance"]
+    found = synthesise(asked, region, starts=1, about=20_000)
+    for margin, least in wanted.items():
+        assert certify(found.robot, region, margin, at_least=least).status == "proved", margin

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinematics import GoughStewart, InvalidGeometry, InvalidShape, InvalidValue, UnreachablePose
+from kinematics import GoughStewart, InvalidGeometry, InvalidShape, InvalidValue
+from kinematics.gough_stewart_geometry import GoughStewartRanges
 from tests.kinematics.gough_stewart_by_hand import (
     anywhere,
     leg_vectors,
@@ -164,9 +165,6 @@ def _sheared() -> np.ndarray:
         ("E", _sheared()),
         ("E", np.eye(4) + np.eye(4)[[3, 0, 1, 2]] * 1e-3),
         ("E", np.full((4, 4), np.inf)),
-        ("leg_limits", (0.5, 0.5)),
-        ("leg_limits", (-0.1, 1.0)),
-        ("leg_limits", (0.1, math.nan)),
     ],
 )
 def test_impossible_geometry_names_its_field(field: str, value: object) -> None:
@@ -184,41 +182,31 @@ def test_chapters_frames_need_three_points_off_a_line() -> None:
 
 
 def test_geometry_is_frozen_hashable_and_comes_back_from_its_vector_and_dictionary() -> None:
-    g = Geometry(Z=random_frame(np.random.default_rng(6)), leg_limits=(0.2, 1.0))
+    g = Geometry(Z=random_frame(np.random.default_rng(6)))
     assert g == Geometry.from_vector(g.vector()) == Geometry(**g.as_dict())
     assert hash(g) == hash(Geometry(**g.as_dict()))
-    assert g.vector().shape == (sum(Geometry.sizes().values()),) == (18 + 18 + 16 + 16 + 2,)
+    assert g.vector().shape == (sum(Geometry.sizes().values()),) == (18 + 18 + 16 + 16,)
     np.testing.assert_array_equal(g.vector()[3:6], g.base_points[1])  # row by row
     np.testing.assert_array_equal(g.vector()[36:40], g.Z[0])
     symbols, named = Geometry.symbols()
-    assert symbols.shape == (70, 1)
+    assert symbols.shape == (68, 1)
     assert named.base_points.shape == (18, 1)
     assert len({g.digest, Geometry().digest}) == 2
     with pytest.raises(AttributeError):
         g.Z = None  # type: ignore[misc,assignment]
 
 
-def test_leg_limits_bound_the_reach_and_both_models() -> None:
+def test_a_stroke_bounds_the_travel_and_neither_model() -> None:
     free, poses = GoughStewart(), random_poses(np.random.default_rng(7), 2000)
     lengths = free.inverse(poses)
     low, high = np.quantile(lengths, [0.02, 0.98])
-    robot = GoughStewart(Geometry(leg_limits=(low, high)))
+    robot = GoughStewart(ranges=GoughStewartRanges(joints=(low, high)))
     inside = ((lengths >= low) & (lengths <= high)).all(axis=1)
     assert 0.1 < inside.mean() < 0.95
-    joints = robot.inverse(poses)
-    np.testing.assert_array_equal(np.isnan(joints), np.repeat(~inside[:, None], 6, axis=1))
-    np.testing.assert_array_equal(joints[inside], lengths[inside])
-    np.testing.assert_array_equal(robot.margin("reach", poses) >= 0.0, inside)
-    np.testing.assert_array_equal(np.isnan(robot.forward(lengths)).all(axis=1), ~inside)
-    outside = int(np.argmax(~inside))
-    np.testing.assert_array_equal(robot.fvi(poses), free.fvi(poses))  # of the legs as lines, within the stroke or not
-    assert robot.assembly_modes(lengths[outside]).shape == (0, 6)
-    with pytest.raises(UnreachablePose) as caught:
-        robot.require_reachable(poses[outside])
-    worst = np.minimum(lengths[outside] - low, high - lengths[outside])
-    assert caught.value.limb == np.argmin(worst) + 1
-    assert caught.value.margin == pytest.approx(worst.min(), abs=1e-15)
-    free.require_reachable(poses)
+    np.testing.assert_array_equal(robot.margin("joint_travel", poses) >= 0.0, inside)
+    np.testing.assert_array_equal(robot.inverse(poses), lengths)
+    np.testing.assert_array_equal(robot.forward(lengths), free.forward(lengths))
+    robot.require_reachable(poses)
 
 
 def test_bad_input_is_refused_or_stays_nan() -> None:

@@ -49,9 +49,8 @@ def holds(op: Op, first: tuple[float, float, float], second: tuple[float, float,
     if not defined(op, x, y):
         assert (low, high) == ALL
         return
-    if op is Op.ATAN2 and x == 0.0 and y <= 0.0:
-        assert low <= -PI
-        assert high >= PI
+    if op is Op.ATAN2 and x == 0.0 and y <= 0.0:  # on the cut
+        assert (low, high) == ALL
         return
     value = OPERATIONS[op](x, y)
     assert not (value < arb(low)), (op, first, second)
@@ -113,11 +112,38 @@ def test_a_product_with_itself_is_a_square(first: tuple[float, float, float]) ->
         (Op.MUL, ALL, (0.0, 0.0)),
         (Op.SUB, ALL, ALL),
         (Op.EXP, (0.0, 1.0), (0.0, 0.0)),
-        (Op.IF_ELSE_ZERO, (0.0, 1.0), (1.0, 1.0)),
+        (Op.ATAN2, (-1.0, 1.0), (-2.0, -1.0)),
+        (Op.LT, ALL, (0.0, 0.0)),
+        (Op.NOT, ALL, (0.0, 0.0)),
+        (Op.IF_ELSE_ZERO, ALL, (1.0, 1.0)),
+        (Op.IF_ELSE_ZERO, (0.0, 1.0), ALL),
     ],
 )
 def test_what_is_not_defined_or_not_known_has_no_bounds(op: Op, first: tuple, second: tuple) -> None:  # type: ignore[type-arg]
     assert operate(op, first, second) == ALL
+
+
+@pytest.mark.parametrize(
+    ("op", "first", "second", "found"),
+    [
+        (Op.LT, (0.0, 1.0), (1.0, 2.0), (0.0, 1.0)),
+        (Op.LT, (0.0, 1.0), (1.5, 2.0), (1.0, 1.0)),
+        (Op.LT, (1.0, 2.0), (0.0, 1.0), (0.0, 0.0)),
+        (Op.LE, (0.0, 1.0), (1.0, 2.0), (1.0, 1.0)),
+        (Op.LE, (1.0, 2.0), (0.0, 1.0), (0.0, 1.0)),
+        (Op.NOT, (0.0, 0.0), (0.0, 0.0), (1.0, 1.0)),
+        (Op.NOT, (-1.0, 1.0), (0.0, 0.0), (0.0, 1.0)),
+        (Op.NOT, (0.5, 1.0), (0.0, 0.0), (0.0, 0.0)),
+        (Op.IF_ELSE_ZERO, (1.0, 1.0), (2.0, 3.0), (2.0, 3.0)),
+        (Op.IF_ELSE_ZERO, (0.0, 0.0), (2.0, 3.0), (0.0, 0.0)),
+        (Op.IF_ELSE_ZERO, (0.0, 0.0), ALL, (0.0, 0.0)),
+        (Op.IF_ELSE_ZERO, (0.0, 1.0), (2.0, 3.0), (0.0, 3.0)),
+    ],
+)
+def test_a_condition_is_decided_by_its_bounds_or_left_open(
+    op: Op, first: tuple[float, float], second: tuple[float, float], found: tuple[float, float]
+) -> None:
+    assert operate(op, first, second) == found
 
 
 @pytest.mark.parametrize("op", list(OPERATIONS), ids=lambda op: op.name)

@@ -80,16 +80,20 @@ def test_the_closest_pitches_return_the_nuts_to_rounding_and_the_turn_to_what_ro
     assert error[3] > 1e-9
 
 
-def test_equal_links_folded_onto_the_drive_axis_turn_freely_and_are_at_the_edge_of_reach():
-    robot = Peppermill(Peppermill.Geometry(proximal_lengths=(0.6, 0.6), distal_lengths=(0.6, 0.6)))
-    folded = np.array([0.0, 0.0, robot.geometry.half_distance, 0.0])  # nut 2 is on drive axis 2
-    gap = np.abs([robot.closure_residual(folded, np.array([0.0, 0.0, a, 2 * a])) for a in (0.3, 1.0, 2.0)])
+def test_equal_links_folded_onto_the_drive_axis_have_no_angle():
+    robot = Peppermill(Peppermill.Geometry(proximal_lengths=(0.4, 0.4), distal_lengths=(0.4, 0.4)))
+    g = robot.geometry
+    folded = np.array([0.0, 0.0, g.half_distance, 0.0])  # nut 2 is on drive axis 2 or nut 1 on drive axis 1
+    poses = np.array([folded, -folded, folded - np.array([0, 0, 0.45, 0])])
+    free = poses[:2]
+    gap = np.abs([robot.closure_residual(free, np.array([0.0, 0.0, a, 2 * a])) for a in (0.3, 1.0, 2.0)])
     assert (gap.min(axis=-1) < 1e-15).all()  # one limb closes at any angle
-    assert robot.margin("reach", folded) == pytest.approx(0.0, abs=1e-12)
-    assert not robot.margin("J_q", folded) > 1e-6  # serial: the drive turns and the platform stays
-    short = Peppermill(Peppermill.Geometry(proximal_lengths=(0.4, 0.4), distal_lengths=(0.4, 0.4)))
-    assert np.isnan(short.inverse(folded)).all()  # the other nut is 1 m away
+    joints = robot.inverse(poses)
+    assert np.isnan(joints).tolist() == [[True] * 4] * 2 + [[False] * 4]
+    assert np.isnan(robot.inverse_modes(free)).all()
+    assert np.isnan(robot.margin("reach", free)).all()
+    assert robot.margin("reach", poses[2]) > 0.0
     with pytest.raises(UnreachablePose):
-        short.require_reachable(folded)
+        robot.require_reachable(free[0])
     unequal = Peppermill(Peppermill.Geometry(proximal_lengths=(0.3, 0.3), distal_lengths=(0.4, 0.4)))
     assert unequal.margin("reach", folded) == pytest.approx(-0.3)  # the other nut is 1 m away, links of 0.7 m

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq, lsq_linear, minimize
 
 from kinematics import Redundant3T1R
-from kinematics.clearance import segment_distance_symbolic, segment_distances
+from kinematics.clearance import segment_distances, segment_gap_symbolic
 from tests.kinematics.redundant_by_hand import NINE_ANGLES, ByHand, box, poses_at, quarter, random_geometry, reachable
 
 LIMBS = [0, 1, 2, 2, 3, 3, 4, 5]
@@ -188,7 +188,7 @@ def test_arm_distances_are_those_of_segments_by_hand(robot):
 
 def symbolic_distance():
     one, two = ca.SX.sym("one", 3, 2), ca.SX.sym("two", 3, 2)
-    return ca.Function("distance", [one, two], [segment_distance_symbolic(one, two)])
+    return ca.Function("distance", [one, two], [ca.norm_2(segment_gap_symbolic(one, two))])
 
 
 SYMBOLIC = symbolic_distance()

@@ -1,0 +1,131 @@
+"""How far a mechanism's joints go, driven ones and passive ones: hardware, beside the geometry and the masses."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from dataclasses import asdict, dataclass
+from typing import NamedTuple
+
+import casadi as ca
+import numpy as np
+
+from kinematics.errors import InvalidValue
+
+Array = np.ndarray
+Pair = tuple[float, float]
+# Squared sine below which a tilt is rounded off: its cone has a tip without a gradient, where joints often rest.
+_TIP = 1e-16
+
+
+@dataclass(frozen=True)
+class JointRanges:
+    """What the drives allow.
+
+    Attributes:
+        joints: lowest and highest value of every driven joint, or such a pair for each [m or rad]; may be infinite.
+    """
+
+    joints: Pair | tuple[Pair, ...] = (-math.inf, math.inf)
+
+    def limits(self, count: int) -> Array:
+        """(count, 2) lowest and highest value of each driven joint.
+
+        Raises:
+            InvalidValue: neither one pair nor one for each, or a pair not in rising order.
+        """
+        given = _numbers(self.joints)
+        if given.shape not in ((2,), (count, 2)) or not (given[..., 0] < given[..., 1]).all():
+            wanted = f"lowest < highest, once or for each of {count} joints"
+            raise InvalidValue(f"{type(self).__name__} joints", self.joints, wanted)
+        return np.broadcast_to(given, (count, 2))
+
+    def check(self, count: int) -> None:
+        """Check every number, for `count` driven joints.
+
+        Raises:
+            InvalidValue: naming the field.
+        """
+        self.limits(count)
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of the numbers, to tell which ranges a file was made for."""
+        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
+
+
+@dataclass(frozen=True)
+class RodRanges(JointRanges):
+    """What drives and the joints at the rods' ends allow.
+
+    Attributes:
+        passive: the largest angle from rest at the drives' ends of the rods and at the platform's ends [rad].
+    """
+
+    passive: Pair = (1.0, 1.0)
+
+    def check(self, count: int) -> None:
+        """As for `JointRanges`; and each passive angle must be in (0, pi]."""
+        super().check(count)
+        given = _numbers(self.passive)
+        if given.shape != (2,) or not ((given > 0.0) & (given <= math.pi)).all():
+            wanted = "two angles in (0, pi] rad: drives' ends, platform's ends"
+            raise InvalidValue(f"{type(self).__name__} passive", self.passive, wanted)
+
+
+class PassiveJoint(NamedTuple):
+    """A joint at an end of a rod.
+
+    Attributes:
+        axis: (3,) unit vector fixed in the part that holds the joint.
+        rod: (3,) along the rod [m].
+        length: |rod|.
+        end: 0 at the drive, 1 at the platform.
+        swivels: it turns freely about its axis and rests where the rod stands square to that; else it rests where the
+            rod lies along the axis.
+    """
+
+    axis: ca.SX
+    rod: ca.SX
+    length: ca.SX
+    end: int
+    swivels: bool = True
+
+    def room(self, limits: Pair) -> list[ca.SX]:
+        """What is left to the limit [rad], each to be at least the margin; up to 1e-8 less within 1e-7 of an axis."""
+        along = ca.dot(self.axis, self.rod) / self.length
+        across = ca.sumsqr(ca.cross(self.axis, self.rod)) / self.length**2
+        if self.swivels:
+            lean = ca.atan2(along, ca.sqrt(across))
+            return [limits[self.end] - lean, limits[self.end] + lean]
+        return [limits[self.end] - ca.atan2(ca.sqrt(across + _TIP), along)]
+
+    def within(self, limits: Pair, margin: ca.SX) -> list[ca.SX]:
+        """At least 0 if and only if the room is at least the margin; without an arctangent.
+
+        With a = limit - margin in [0, pi / 2] for a swivelling joint and [0, pi] for another, which keep their angle in
+        these too: the sine of a lean is at most sin a, the cosine of a tilt at least cos a. For larger a, which hold
+        trivially, both are stricter.
+        """
+        allowed, along = limits[self.end] - margin, ca.dot(self.axis, self.rod)
+        if self.swivels:
+            reach = ca.sin(allowed) * self.length
+            return [reach - along, reach + along, allowed]
+        return [along - ca.cos(allowed) * self.length, allowed]
+
+
+def _numbers(given: object) -> Array:
+    """An array of floats; of one NaN where any of it is not a number."""
+    try:
+        array = np.array(given)
+    except ValueError:  # ragged
+        return np.full(1, np.nan)
+    return array.astype(float) if array.dtype.kind in "iuf" else np.full(1, np.nan)
+
+
+def joint_travel(joints: ca.SX, limits: Array) -> ca.SX:
+    """Room of each joint to its lowest and highest value, in its own unit; infinite where nothing limits any."""
+    rooms = [joints[i] - low for i, (low, _) in enumerate(limits) if np.isfinite(low)]
+    rooms += [high - joints[i] for i, (_, high) in enumerate(limits) if np.isfinite(high)]
+    return ca.vertcat(*rooms) if rooms else ca.SX(math.inf)
