@@ -30,6 +30,7 @@ _START = 64  # intervals, at least, that the path is cut into first
 _SHARE = 0.9  # of the lowest value seen, that a bound must reach
 _SMALLEST = 1e-9  # of the length: narrower intervals are not halved
 _MOST = 200_000  # intervals
+_MODULI = ("J_q", "det_J_x", "internal_determinant")
 _UP = 1.0 + 2.0**-48  # covers the roundings of products and of their sum over fewer than ten coordinates
 
 
@@ -38,8 +39,9 @@ class PathCertificate:
     """What holds at every pose of a path.
 
     Attributes:
-        margins: proved lower bounds, all above 0, of reach [m], of the normalised |J_q| and |det J_x| and, where single
-            rods hold the platform's orientation, of the internal determinant.
+        margins: proved lower bounds, all above 0, of reach [m], of the room to the joints' limits
+            [rad or m], of the normalised |J_q| and |det J_x| and, where single rods hold the platform's orientation, of
+            the internal determinant.
         intervals: how many intervals of s the proof took.
     """
 
@@ -105,7 +107,7 @@ class _Claims:
         self.names = [parts[k][0] for k in kept]
         self.limbs = [parts[k][1] for k in kept]
         claims = ca.vertcat(
-            *(parts[k][2] if parts[k][0] == "reach" or not values[k] < 0.0 else -parts[k][2] for k in kept)
+            *(-parts[k][2] if parts[k][0] in _MODULI and values[k] < 0.0 else parts[k][2] for k in kept)
         )
         gradient = ca.jacobian(claims, model.pose)
 
@@ -161,6 +163,9 @@ def _margins(robot: Mechanism) -> list[tuple[str, int | None, ca.SX]]:
     found: list[tuple[str, int | None, ca.SX]] = []
     for i in range(reach.numel()):
         found += [("reach", i + 1, side) for side in sides(reach[i])]
+    limits = robot.ranges.limits(m)
+    found += [("joint_travel", i + 1, model.inverse[i] - limits[i, 0]) for i in range(m)]
+    found += [("joint_travel", i + 1, limits[i, 1] - model.inverse[i]) for i in range(m)]
     found += [("J_q", i + 1, model.j_q_at_pose[i] / q_scale[i]) for i in range(m)]
     spanned = determinant(model.j_x_at_pose) if m == n else volume(model.j_x_at_pose)
     found.append(("det_J_x", None, spanned / x_scale))

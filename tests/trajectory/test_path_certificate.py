@@ -60,16 +60,15 @@ def test_a_leg_too_short_for_a_few_hundredths_of_a_millimetre_is_found_between_s
     start = np.array([base[0] - end[0], base[1] - end[1] - nearest, base[2] - end[2] + height])
     far = start + np.array([0.0, 0.2, 0.0])
     path = RoundedPath(SIX, ((*start.tolist(), 0, 0, 0), (*far.tolist(), 0, 0, 0)), ())
-    fields = {"base_points": geometry.base_points, "platform_points": geometry.platform_points}
-    robot = GoughStewart(GoughStewart.Geometry(**fields, leg_limits=(height + 1e-9, 2.0)))
+    robot = GoughStewart(geometry, ranges=GoughStewart.Ranges(joints=(height + 1e-9, 2.0)))
     (sampled,) = path.evaluate(np.linspace(0.0, path.length, 2001), 0)
-    assert robot.margin("reach", sampled).min() > 0.0
+    assert robot.margin("joint_travel", sampled).min() > 0.0
     with pytest.raises(PathRefused) as caught:
         certify_path(robot, path)
     error = caught.value
-    assert (error.margin, error.limb, error.proved) == ("reach", 1, True)
+    assert (error.margin, error.limb, error.proved) == ("joint_travel", 1, True)
     assert error.at == pytest.approx(nearest, abs=2e-5)
-    assert robot.margin("reach", np.array(error.pose)) < 0.0
+    assert robot.margin("joint_travel", np.array(error.pose)) < 0.0
     assert -1e-9 <= error.bound <= 0.0
 
 
@@ -77,7 +76,7 @@ def test_a_singular_pose_on_the_way_is_found() -> None:
     """Yaw through a quarter turn, where all legs of a symmetric hexapod meet one screw axis."""
     path = AdeptCycle(span=0.1, pick=(-0.05, 0.0, 0.6), turn=math.radians(190), start_angle=-1.0, pose_names=SIX)
     with pytest.raises(PathRefused, match="det_J_x") as caught:
-        certify_path(GoughStewart(), path)
+        certify_path(GoughStewart(ranges=GoughStewart.Ranges(joints=(0.1, 2.0))), path)
     assert caught.value.proved
     assert caught.value.limb is None
 
@@ -87,10 +86,7 @@ def test_a_margin_that_touches_zero_is_undecided_not_proved() -> None:
     robot = GoughStewart()
     path = RoundedPath(SIX, ((0, 0, 0.6, 0, 0, 0), (0, 0, 0.7, 0, 0, 0)), ())
     shortest = float(robot.inverse(np.array(path.poses[0]))[0])
-    g = robot.geometry
-    touching = GoughStewart(
-        GoughStewart.Geometry(base_points=g.base_points, platform_points=g.platform_points, leg_limits=(shortest, 2.0))
-    )
+    touching = GoughStewart(robot.geometry, ranges=GoughStewart.Ranges(joints=(shortest, 2.0)))
     with pytest.raises(PathRefused, match="undecided") as caught:
         certify_path(touching, path)
     assert not caught.value.proved
