@@ -42,12 +42,18 @@ def inverse_dynamics(robot: Mechanism, payload: float, pose: Array, velocity: Ar
 
     def build(model: Model) -> Build:
         rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration")]
-        return [model.pose, *rates], [_at_actuators(model, _torques(robot, model, payload, rates))]
+        return [model.pose, *rates], [torques(robot, payload, *rates)]
 
     named = {"pose": pose, "velocity": velocity, "acceleration": acceleration}
     given = [checked(v, name, robot.pose_names) for name, v in named.items()]
     program = robot.program(("inverse_dynamics", payload, robot.inertia), build)
     return evaluate(program, *np.broadcast_arrays(*given))[0]
+
+
+def torques(robot: Mechanism, payload: float, velocity: ca.SX, acceleration: ca.SX) -> ca.SX:
+    """(m,) what `inverse_dynamics` evaluates, in the model's symbols `pose` and `geometry`."""
+    model = robot.model()
+    return _at_actuators(model, _torques(robot, model, payload, [velocity, acceleration]))
 
 
 def _at_actuators(model: Model, torques: ca.SX) -> ca.SX:

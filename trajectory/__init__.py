@@ -13,6 +13,7 @@ from trajectory.cycle import Cycle, Piece, there_and_back
 from trajectory.errors import LimitsExceeded, RoughPath, SetpointFileError, TimingFailed
 from trajectory.files import CannotWrite, require_writable, write_files
 from trajectory.limits import Limits
+from trajectory.lower_bound import lower_bound
 from trajectory.motion import Motion, PoseMotion, motion_along, pose_motion
 from trajectory.path import Path, Reversed, require_smooth
 from trajectory.repair import Repaired, repair
@@ -60,6 +61,7 @@ __all__ = [
     "TimingFailed",
     "Verification",
     "cycle_setpoints",
+    "lower_bound",
     "motion_along",
     "plan_approach",
     "pose_motion",

@@ -148,9 +148,20 @@ def _solve(grid: Array, bound: Array, rows: list[Coefficients], asked: dict[str,
         raise TimingFailed("toppra", asked, "the path's coefficients are not finite: a singular pose on it")
     # toppra asks for a path, but all that its algorithm reads from it is the interval [0, 1].
     unit = SimplePath(np.array([0.0, 1.0]), np.array([[0.0], [1.0]]))
-    constraints = [SpeedBound(bound), *(SymmetricRows(r) for r in rows)]
+    # toppra's solver cuts u and x off at 1e4: count time in about the motion's own duration.
+    scale = 1.0 / _about_as_long(bound, rows) ** 2
+    scaled = [(a * scale, b * scale, c) for a, b, c in rows]
+    constraints = [SpeedBound(bound / scale), *(SymmetricRows(r) for r in scaled)]
     problem = TOPPRA(constraints, unit, gridpoints=grid, solver_wrapper="seidel")
     _, speed, _ = problem.compute_parameterization(0.0, 0.0)
     if speed is None or not np.isfinite(speed).all():
         raise TimingFailed("toppra", asked, f"no solution ({problem.problem_data.return_code.name})")
-    return np.asarray(speed)
+    return np.asarray(speed) * math.sqrt(scale)
+
+
+def _about_as_long(bound: Array, rows: list[Coefficients]) -> float:
+    """Roughly the duration, as if u had one bound all along, and x one of its own [s]."""
+    by_speed = float((bound**-0.5).mean())
+    steepest = [1.0 / np.abs(a).max(axis=-1) for a, _, _ in rows]
+    by_rows = 2.0 / math.sqrt(float(np.median(np.min(steepest, axis=0)))) if rows else 0.0
+    return max(by_speed, by_rows)
