@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from studies.errors import KeyPath
@@ -11,11 +11,15 @@ from studies.mechanisms import GeometryField, geometry_fields, shape
 from studies.schema import (
     REGION_KINDS,
     BoxRegion,
+    Cycle,
     CylinderRegion,
     Optimise,
     Requirement,
     Study,
     Sum,
+    Trajectory,
+    Waypoint,
+    WaypointPath,
     table_of,
 )
 from studies.units import Dimension, Key, Table
@@ -41,8 +45,24 @@ def study_table(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> Table:
             "region": _region_table(mechanism, raw.get("region")),
             "optimise": table_of(Optimise).updated(optimise),
             "requirement": table_of(Requirement, rows=True).updated({"margin": margins}),
+            "trajectory": _trajectory_table(mechanism.pose_names),
         }
     )
+
+
+def _trajectory_table(pose_names: Sequence[str]) -> Table:
+    """The waypoints' coordinates, and only what the pose has of the cycle's angles; in a plane there is no cycle."""
+    lacking = {
+        "turn": not {"theta", "yaw"} & set(pose_names),
+        "start_angle": not {"theta", "yaw"} & set(pose_names),
+        "tilt": not {"roll", "pitch"} <= set(pose_names),
+    }
+    cycle = Table({name: key for name, key in table_of(Cycle).keys.items() if not lacking.get(name)})
+    coordinates = {name: Key("a finite number", _pose_dimension(name)) for name in pose_names}
+    waypoint = table_of(Waypoint, rows=True).updated(coordinates)
+    trajectory = table_of(Trajectory).updated({"path": table_of(WaypointPath).updated({"waypoint": waypoint})})
+    keys = {name: key for name, key in trajectory.keys.items() if name != "cycle"}
+    return Table(keys | {"cycle": cycle} if "z" in pose_names else keys)
 
 
 def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:

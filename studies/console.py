@@ -100,7 +100,15 @@ def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Ti
     robot, figures = timing.cycle.robot, timing.figures()
     if as_json:
         made_for = {"mechanism": type(robot).__name__, "geometry_hash": robot.geometry.digest}
-        print_json({**made_for, **figures, "seconds": timing.seconds, "files": files})
+        print_json(
+            {
+                **made_for,
+                **figures,
+                "proved_on_the_path": timing.cycle.certificate.margins,
+                "seconds": timing.seconds,
+                "files": files,
+            }
+        )
         return
     names = [name for name in figures if name != "peak_over_limit"]
     title = f"Cycle of {type(robot).__name__}, geometry {robot.geometry.digest[:12]}"
@@ -110,12 +118,19 @@ def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Ti
         print_table(title, ("figure", "prototype", "result"), rows)
     else:
         print_table(title, ("figure", "value"), [(name, _figure(figures[name])) for name in names])
-    verification = timing.cycle.pieces[0].timed.verification
+    proved = timing.cycle.certificate
     print_table(
-        "Way there, between the gridpoints too",
-        ("quantity", "peak", "limit", "peak over limit", "joint", "at [s]"),
-        verification.rows(),
+        f"Proved at every pose of the path, by {proved.intervals} intervals",
+        ("margin", "at least"),
+        [(name, _figure(bound)) for name, bound in proved.margins.items()],
     )
+    for k, piece in enumerate(timing.cycle.there, start=1):
+        which = f", piece {k}" if len(timing.cycle.there) > 1 else ""
+        print_table(
+            f"Way there{which}, between the gridpoints too",
+            ("quantity", "peak", "limit", "peak over limit", "joint", "at [s]"),
+            piece.timed.verification.rows(),
+        )
     _print_files(files)
 
 

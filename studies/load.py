@@ -11,9 +11,11 @@ from pydantic import ValidationError
 from studies.against_mechanism import faults, study_table
 from studies.errors import KeyPath, Problem, StudyError, spelled
 from studies.mechanisms import mechanism_class, mechanism_names
-from studies.schema import Study, table_of
+from studies.schema import Study, Waypoint, table_of
+from studies.setup import path_of
 from studies.toml_file import TomlFile, read_toml
 from studies.units import Conversion, Key, Table
+from trajectory import InvalidPath, read_waypoints
 
 if TYPE_CHECKING:
     from kinematics import Mechanism
@@ -47,6 +49,35 @@ def load_study(path: Path) -> Study:
     problems = _problems(file, table, conversion, wrong)
     if problems:
         raise StudyError(problems)
+    assert mechanism is not None
+    return _with_waypoints(study, file, mechanism.pose_names)
+
+
+def _with_waypoints(study: Study, file: TomlFile, pose_names: tuple[str, ...]) -> Study:
+    """The study with the waypoints of the file that it names, so that they belong to its digest.
+
+    Raises StudyError where a waypoint of the study itself does not fit, WaypointFileError where one of the file.
+    """
+    if study.trajectory is None or study.trajectory.path is None:
+        return study
+    path, key = study.trajectory.path, ("trajectory", "path")
+    if (path.file is None) == (not path.waypoint):
+        found = "neither a file nor waypoints" if path.file is None else "a file and waypoints"
+        raise StudyError([file.problem(key, found, "one of the two")])
+    if path.file is not None:
+        read = read_waypoints(file.path.parent / path.file, pose_names)
+        rows = zip(read.poses, (0.0, *read.blends, 0.0), strict=True)
+        waypoints = tuple(
+            Waypoint(coordinates={n: v for n, v in zip(pose_names, pose, strict=True) if v is not None}, blend=blend)
+            for pose, blend in rows
+        )
+        path = path.model_copy(update={"waypoint": waypoints})
+        return study.model_copy(update={"trajectory": study.trajectory.model_copy(update={"path": path})})
+    try:
+        path_of(study.trajectory, pose_names)
+    except InvalidPath as error:
+        at = (*key, "waypoint", error.pose - 1)
+        raise StudyError([file.problem(at, f"{error.field} {error.found}", error.expected)]) from error
     return study
 
 

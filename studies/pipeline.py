@@ -40,21 +40,21 @@ class Timing:
     @property
     def half_cycle(self) -> float:
         """The way there, before the stretch to whole periods [s]."""
-        return self.cycle.pieces[0].timed.law.duration
+        return self.cycle.half
 
     def figures(self) -> dict[str, Any]:
         """What the timing claims, as plain data."""
-        there = self.cycle.pieces[0].timed
+        there = [piece.timed for piece in self.cycle.there]
         return {
-            "law": there.law.name,
-            "half_cycle": there.law.duration,
+            "law": there[0].motion.name,
+            "half_cycle": self.half_cycle,
             "cycle_on_the_bus": float(self.setpoints.time[-1]),
-            "repair_factor": there.factor,
+            "repair_factor": max(timed.factor for timed in there),
             "peak_over_limit": {
                 name: max(piece.timed.verification.peak_over_limit[name] for piece in self.cycle.pieces)
-                for name in there.verification.peak_over_limit
+                for name in there[0].verification.peak_over_limit
             },
-            "worst_rms_over_peak_torque": float(there.verification.rms_over_peak.max()),
+            "worst_rms_over_peak_torque": max(float(timed.verification.rms_over_peak.max()) for timed in there),
         }
 
 
@@ -129,7 +129,7 @@ def optimise(study: Study, progress: Progress) -> Synthesis:
 
 def margins_on_path(problem: Problem, robot: Mechanism, asked: schema.Trajectory) -> dict[str, float]:
     """The worst value of each requirement's margin on the cycle's path; NaN counts as -inf."""
-    path = setup.cycle_of(asked.cycle)
+    path = setup.path_of(asked, robot.pose_names)
     (poses,) = path.evaluate(np.linspace(0.0, path.length, asked.grid + 1), 0)
     found = {}
     for requirement in problem.requirements:
@@ -144,7 +144,7 @@ def time_cycle(asked: schema.Trajectory, robot: Mechanism) -> Timing:
     from trajectory.toppra_law import time_optimal
 
     started = time.perf_counter()
-    path, limits, payload = setup.cycle_of(asked.cycle), setup.limits_of(asked.limits), asked.cycle.payload
+    path, limits, payload = setup.path_of(asked, robot.pose_names), setup.limits_of(asked.limits), asked.payload
 
     cycle = there_and_back(robot, path, limits, payload, partial(time_optimal, intervals=asked.grid))
     seconds = time.perf_counter() - started

@@ -139,13 +139,17 @@ def map_picture(sections: dict[str, Section], title: str, bound: float | None) -
 
 
 def path_picture(poses: Array, time: Array, names: Sequence[str]) -> bytes:
-    """The tool's path in its plane, and each pose coordinate over time."""
+    """The tool's path from its start, and each pose coordinate over time."""
     with mpl.rc_context(_STYLE):
         figure = Figure(figsize=(9.8, 3.2), layout="constrained")
         left, right = figure.subplots(1, 2)
-        across = np.hypot(*(poses[:, :2] - poses[0, :2]).T)
-        left.plot(1e3 * across, 1e3 * (poses[:, 2] - poses[0, 2]), color=_COLOURS[0])
-        left.set(title="path of the tool", xlabel="across [mm]", ylabel="up [mm]")
+        away = 1e3 * (poses - poses[0])
+        if "z" in names:
+            left.plot(np.hypot(away[:, 0], away[:, 1]), away[:, 2], color=_COLOURS[0])
+            left.set(title="path of the tool", xlabel="across [mm]", ylabel="up [mm]")
+        else:
+            left.plot(away[:, 0], away[:, 1], color=_COLOURS[0])
+            left.set(title="path of the tool", xlabel="x [mm]", ylabel="y [mm]")
         left.set_aspect("equal", adjustable="datalim")
         for k, name in enumerate(names):
             unit, factor = ("mm", 1e3) if name in "xyz" else ("deg", 180 / np.pi)

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from kinematics.motion import JointMotion
 from studies import plots
 from studies.check import shown_pose
 from studies.pipeline import Outcome, Timing
-from trajectory.motion import motion_along
+from trajectory.motion import motion_of
 
 Pictures = list[tuple[str, bytes]]  # title and PNG
 _MAPPED = ("fvi", "internal_determinant")
@@ -103,8 +104,10 @@ def _timing_figures(timing: Timing) -> list[tuple[str, str]]:
 
 def _peak_rows(timing: Timing) -> list[Sequence[str]]:
     rows: list[Sequence[str]] = []
-    for way, piece in zip(("there", "back"), timing.cycle.pieces, strict=True):
-        rows += [(way, *row) for row in piece.timed.verification.rows()]
+    for way, found in (("there", timing.cycle.there), ("back", timing.cycle.back)):
+        for k, piece in enumerate(found, start=1):
+            name = f"{way}, piece {k}" if len(found) > 1 else way
+            rows += [(name, *row) for row in piece.timed.verification.rows()]
     return rows
 
 
@@ -125,20 +128,26 @@ def pictures_of(outcome: Outcome) -> Pictures:
 
 
 def _motion_pictures(timing: Timing) -> Pictures:
-    cycle = timing.cycle
-    piece, robot = cycle.pieces[0], cycle.robot
-    times = np.linspace(0.0, piece.timed.law.duration, 1501)
-    motion = motion_along(robot, piece.path, piece.timed.law.at(times), piece.payload)
+    cycle, robot = timing.cycle, timing.cycle.robot
+    starts = np.cumsum([0.0, *(piece.duration for piece in cycle.there)])
+    inside = [np.linspace(0.0, piece.duration, 1501) for piece in cycle.there]
+    times = np.concatenate([start + t for start, t in zip(starts, inside, strict=False)])
+    motions = [
+        motion_of(robot, piece.motion.at(t), piece.payload) for piece, t in zip(cycle.there, inside, strict=True)
+    ]
+    joints = JointMotion(*(np.concatenate(parts) for parts in zip(*(m.joints for m in motions), strict=True)))
+    torque = np.concatenate([m.torque for m in motions])
+    pose = np.concatenate([m.tool.pose for m in motions])
     count = len(robot.joint_names)
     unit = "rad" if set(robot.actuator_units) == {"rad"} else "SI"
     rows: list[tuple[str, Any, Any]] = [
-        (f"position [{unit}]", motion.joints.position, None),
-        (f"speed [{unit}/s]", motion.joints.first, cycle.limits.of_joints("speed", count)),
-        (f"acceleration [{unit}/s²]", motion.joints.second, cycle.limits.of_joints("acceleration", count)),
-        ("torque [N m]" if unit == "rad" else "effort [SI]", motion.torque, cycle.limits.of_joints("torque", count)),
+        (f"position [{unit}]", joints.position, None),
+        (f"speed [{unit}/s]", joints.first, cycle.limits.of_joints("speed", count)),
+        (f"acceleration [{unit}/s²]", joints.second, cycle.limits.of_joints("acceleration", count)),
+        ("torque [N m]" if unit == "rad" else "effort [SI]", torque, cycle.limits.of_joints("torque", count)),
     ]
     return [
-        ("Path of the half cycle", plots.path_picture(motion.tool.pose, times, robot.pose_names)),
+        ("Path of the half cycle", plots.path_picture(pose, times, robot.pose_names)),
         ("Joints on the way there, limits dashed", plots.motion_picture(times, rows, robot.actuator_names)),
     ]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from pathlib import Path as FilePath
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from studies.errors import StudyError
 from studies.mechanisms import mechanism_class
 from studies.schema import CylinderRegion, Study
 from studies.toml_file import read_toml
-from trajectory import AdeptCycle, Limits
+from trajectory import Limits, Path, RoundedPath
 
 OBJECTIVE = "fvi"
 
@@ -63,12 +63,21 @@ def problem_of(study: Study) -> Problem:
     )
 
 
-def cycle_of(cycle: schema.Cycle) -> AdeptCycle:
-    """The path there."""
-    return AdeptCycle(cycle.lift, cycle.span, cycle.blend, cycle.turn, cycle.pick, cycle.heading)
+def path_of(asked: schema.Trajectory, pose_names: tuple[str, ...]) -> Path:
+    """The path there, of poses with these coordinates.
+
+    Raises:
+        InvalidPath: of a waypoint that does not fit.
+    """
+    if asked.cycle is not None:
+        return schema.adept_cycle(asked.cycle.model_dump(), pose_names=pose_names)
+    assert asked.path is not None
+    waypoints = asked.path.waypoint
+    poses = tuple(tuple(w.coordinates.get(name) for name in pose_names) for w in waypoints)
+    return RoundedPath(pose_names, poses, tuple(w.blend for w in waypoints[1:-1]))
 
 
-def require_cycle_inside(study: Study, file: Path) -> None:
+def require_cycle_inside(study: Study, file: FilePath) -> None:
     """Check that the cycle stays where the geometry is verified.
 
     Raises:
@@ -76,14 +85,15 @@ def require_cycle_inside(study: Study, file: Path) -> None:
     """
     if study.trajectory is None:
         return
-    path = cycle_of(study.trajectory.cycle)
-    (poses,) = path.evaluate(np.linspace(0.0, path.length, 501), 0)
     names = mechanism_class(study.mechanism).pose_names
+    path = path_of(study.trajectory, names)
+    (poses,) = path.evaluate(np.linspace(0.0, path.length, 501), 0)
     inside = region_of(study).contains(poses, names, slack=1e-9)
     if not inside.all():
         pose = ", ".join(f"{v:.4g}" for v in poses[int(np.argmin(inside))])
-        expected = f"a cycle inside the region, {region_of(study)}"
-        problem = read_toml(file).problem(("trajectory", "cycle"), f"the pose ({pose}) on it", expected)
+        key = "path" if study.trajectory.cycle is None else "cycle"
+        expected = f"a {key} inside the region, {region_of(study)}"
+        problem = read_toml(file).problem(("trajectory", key), f"the pose ({pose}) on it", expected)
         raise StudyError([problem])
 
 

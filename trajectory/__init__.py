@@ -8,19 +8,31 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from trajectory.adept import AdeptCycle
+from trajectory.adept import STANDARD_SIZES, AdeptCycle
 from trajectory.cycle import Cycle, Piece, there_and_back
-from trajectory.errors import LimitsExceeded, RoughPath, SetpointFileError, TimingFailed
+from trajectory.errors import (
+    InvalidPath,
+    LimitsExceeded,
+    PathRefused,
+    RoughPath,
+    SetpointFileError,
+    TimingFailed,
+    WaypointFileError,
+)
 from trajectory.files import CannotWrite, require_writable, write_files
 from trajectory.limits import Limits
 from trajectory.lower_bound import lower_bound
-from trajectory.motion import Motion, PoseMotion, motion_along, pose_motion
-from trajectory.path import Path, Reversed, require_smooth
+from trajectory.motion import Motion, PoseMotion, motion_of, pose_motion
+from trajectory.path import Part, Path, Reversed, require_smooth
+from trajectory.path_certificate import PathCertificate, certify_path
 from trajectory.repair import Repaired, repair
+from trajectory.rounded import RoundedPath
 from trajectory.setpoint_file import read_setpoints, write_setpoints
 from trajectory.setpoints import Setpoints, cycle_setpoints
+from trajectory.timed import TimedMotion, TimedPath
 from trajectory.timing import PathMotion, TimeLaw
 from trajectory.verification import Peak, Verification, verify
+from trajectory.waypoint_file import read_waypoints
 
 if TYPE_CHECKING:
     from trajectory.approach import Approach, plan_approach
@@ -40,32 +52,43 @@ def __getattr__(name: str) -> Any:
 
 
 __all__ = [
+    "STANDARD_SIZES",
     "AdeptCycle",
     "Approach",
     "CannotWrite",
     "Cycle",
+    "InvalidPath",
     "Limits",
     "LimitsExceeded",
     "Motion",
+    "Part",
     "Path",
+    "PathCertificate",
     "PathMotion",
+    "PathRefused",
     "Peak",
     "Piece",
     "PoseMotion",
     "Repaired",
     "Reversed",
     "RoughPath",
+    "RoundedPath",
     "SetpointFileError",
     "Setpoints",
     "TimeLaw",
+    "TimedMotion",
+    "TimedPath",
     "TimingFailed",
     "Verification",
+    "WaypointFileError",
+    "certify_path",
     "cycle_setpoints",
     "lower_bound",
-    "motion_along",
+    "motion_of",
     "plan_approach",
     "pose_motion",
     "read_setpoints",
+    "read_waypoints",
     "repair",
     "require_smooth",
     "require_writable",

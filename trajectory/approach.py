@@ -88,7 +88,7 @@ def plan_approach(
     table = np.concatenate([times[:, None], pose, *dense, torque], axis=1)[::PARTS]
     header = robot_header(robot, limits) | {"laws": ["ruckig"], "payload [kg]": payload}
     header |= {"start": ends[0].tolist(), "target": ends[1].tolist(), "period [s]": float(period), "periods": [count]}
-    setpoints = Setpoints.of_table(table, robot.actuator_names, joint_units, header)
+    setpoints = Setpoints.of_table(table, robot.pose_names, robot.actuator_names, joint_units, header)
     return Approach(setpoints, count * period, found)
 
 

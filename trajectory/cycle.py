@@ -1,52 +1,84 @@
-"""A cycle: the way there and the way back, each timed from rest to rest.
+"""A cycle: the way there and the way back, in pieces that are timed from rest to rest.
 
-At the turning point the tangent jumps, and no single law may pass that at speed: each way is a piece of its own.
+Where the tangent jumps, as at the turning point, no law may pass at speed: there a piece ends and the next one starts.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from kinematics import InvalidValue, Mechanism
 from trajectory.errors import LimitsExceeded
 from trajectory.limits import Limits
 from trajectory.path import Path, Reversed
+from trajectory.path_certificate import PathCertificate, certify_path
 from trajectory.repair import Repaired, repair
-from trajectory.timing import TimeLaw
+from trajectory.timed import TimedMotion
 from trajectory.verification import Verification, verify
 
-Timing = Callable[[Mechanism, Path, Limits, float], TimeLaw]
+Timing = Callable[[Mechanism, Path, Limits, float], TimedMotion]
+_SAME = 1e-9  # m or rad: no further apart are two poses the same
 
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """One way, from rest to rest, within its limits.
+    """One piece, from rest to rest, within its limits.
 
     Attributes:
-        path: of the pose.
-        payload: mass at the tool on this way [kg].
-        timed: the law, its verification and the factor of its repair.
+        path: that was asked for.
+        payload: mass at the tool on it [kg].
+        timed: the motion, its verification and the factor of its repair.
     """
 
     path: Path
     payload: float
     timed: Repaired
 
+    @property
+    def motion(self) -> TimedMotion:
+        """Of the pose, in time."""
+        return self.timed.motion
+
+    @property
+    def duration(self) -> float:
+        """Of this piece [s]."""
+        return self.timed.motion.duration
+
 
 @dataclass(frozen=True, eq=False)
 class Cycle:
-    """The pieces in order, the limits and the robot for which they are timed."""
+    """A path that was proved, and its pieces in order, with the limits and the robot for which they are timed.
+
+    Attributes:
+        certificate: that every pose of the path is within reach and away from the singularities.
+        there, back: the pieces of each way; none back where the path ends in the pose where it starts.
+    """
 
     robot: Mechanism
     limits: Limits
-    pieces: tuple[Piece, ...]
+    path: Path
+    certificate: PathCertificate
+    there: tuple[Piece, ...]
+    back: tuple[Piece, ...]
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """Of both ways, in order."""
+        return (*self.there, *self.back)
 
     @property
     def duration(self) -> float:
         """Of all pieces [s]."""
-        return sum(piece.timed.law.duration for piece in self.pieces)
+        return sum(piece.duration for piece in self.pieces)
+
+    @property
+    def half(self) -> float:
+        """Of the way there [s]."""
+        return sum(piece.duration for piece in self.there)
 
     def stretched_to(self, period: float) -> Cycle:
         """Every piece stretched to a whole number of periods, so that each pose at rest is a set-point; verified again.
@@ -58,13 +90,14 @@ class Cycle:
             InvalidValue: the period is not finite and positive.
             LimitsExceeded: a stretched piece fails its verification.
         """
-        return Cycle(self.robot, self.limits, tuple(self._whole(piece, period) for piece in self.pieces))
+        there, back = (tuple(self._whole(piece, period) for piece in way) for way in (self.there, self.back))
+        return replace(self, there=there, back=back)
 
     def _whole(self, piece: Piece, period: float) -> Piece:
-        law = piece.timed.law.scaled_to(periods_of(piece.timed.law.duration, period) * period)
-        found = _within(verify(self.robot, piece.path, law, self.limits, piece.payload))
-        factor = law.duration / piece.timed.law.duration
-        return Piece(piece.path, piece.payload, Repaired(law, factor, piece.timed.verification, found))
+        factor = periods_of(piece.duration, period) * period / piece.duration
+        motion = piece.motion.stretched(factor)
+        found = _within(verify(self.robot, motion, self.limits, piece.payload))
+        return Piece(piece.path, piece.payload, Repaired(motion, factor, piece.timed.verification, found))
 
 
 def there_and_back(
@@ -75,10 +108,12 @@ def there_and_back(
     timing: Timing,
     payload_back: float | None = None,
 ) -> Cycle:
-    """Time a path and its reverse; each is verified, and repaired by at most 1 %.
+    """Prove a path, and time it and its reverse; each piece is verified, and repaired by at most 1 %.
+
+    A path with corners that are not rounded is timed piece by piece, and one that ends where it starts is not reversed.
 
     Args:
-        robot: any mechanism whose pose is [x, y, z, theta].
+        robot: any mechanism with the path's kind of pose.
         path: the way there.
         limits: of joints and tool.
         payload: mass at the tool on the way there [kg].
@@ -86,14 +121,26 @@ def there_and_back(
         payload_back: mass on the way back [kg]; as on the way there when None.
 
     Raises:
+        PathRefused: a pose of the path is out of reach or singular, or could not be proved not to be.
         LimitsExceeded: a law breaks its limits by more than may be repaired; and what `timing` raises.
     """
-    loads = (payload, payload if payload_back is None else payload_back)
-    pieces = []
-    for way, load in zip((path, Reversed(path)), loads, strict=True):
-        timed = repair(robot, way, timing(robot, way, limits, load), limits, load)
-        pieces.append(Piece(way, load, timed))
-    return Cycle(robot, limits, tuple(pieces))
+    certificate = certify_path(robot, path)
+
+    def timed(way: Path, load: float) -> tuple[Piece, ...]:
+        parts = way.split()
+        return tuple(
+            Piece(part, load, repair(robot, timing(robot, part, limits, load), limits, load)) for part in parts
+        )
+
+    there = timed(path, payload)
+    back = () if is_closed(path) else timed(Reversed(path), payload if payload_back is None else payload_back)
+    return Cycle(robot, limits, path, certificate, there, back)
+
+
+def is_closed(path: Path) -> bool:
+    """Whether a path ends in the pose where it starts, an angle a turn on being another one."""
+    start, end = path.evaluate(np.array([0.0, path.length]), 0)[0]
+    return bool(np.allclose(start, end, rtol=0.0, atol=_SAME))
 
 
 def periods_of(duration: float, period: float) -> int:

@@ -1,4 +1,4 @@
-"""The motion of the pose, the joints and the drives that follows from a path and a time law."""
+"""A path's time law gives the motion of the pose, and that the motion of the joints and the drives."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from trajectory.timing import PathMotion
 
 
 class PoseMotion(NamedTuple):
-    """The pose and its time derivatives, each (..., 4)."""
+    """The pose and its time derivatives, each (..., n)."""
 
     pose: Array
     velocity: Array
@@ -40,15 +40,13 @@ def pose_motion(path: Path, along: PathMotion) -> PoseMotion:
     return PoseMotion(pose, first * v, second * v**2 + first * a, third * v**3 + 3 * second * v * a + first * j)
 
 
-def motion_along(robot: Mechanism, path: Path, along: PathMotion, payload: float) -> Motion:
-    """Pose, joints and torque in time; NaN where a limb cannot reach.
+def motion_of(robot: Mechanism, tool: PoseMotion, payload: float) -> Motion:
+    """Joints and torque that belong to a motion of the pose; NaN where a limb cannot reach.
 
     Args:
-        robot: any mechanism with the path's kind of pose.
-        path: of the pose.
-        along: (...,) arc length and its time derivatives.
+        robot: any mechanism with this kind of pose.
+        tool: (..., n) the pose and its time derivatives.
         payload: mass at the tool [kg].
     """
-    tool = pose_motion(path, along)
     torque = inverse_dynamics(robot, payload, tool.pose, tool.velocity, tool.acceleration)
     return Motion(tool, actuator_motion(robot, *tool), torque)

@@ -17,7 +17,7 @@ import numpy as np
 from kinematics import InvalidValue
 from trajectory.errors import SetpointFileError
 from trajectory.files import write_files
-from trajectory.path import SCHOENFLIES, Array
+from trajectory.path import Array
 from trajectory.setpoints import Setpoints
 
 FORMAT = "linkwright set-points 1"
@@ -47,7 +47,8 @@ def setpoints_text(setpoints: Setpoints) -> str:
     if not np.isfinite(table).all():
         row, column = (int(k) for k in np.argwhere(~np.isfinite(table))[0])
         raise InvalidValue(f"set-point {row}, {setpoints.columns[column]}", table[row, column], "a finite number")
-    header = {**setpoints.header, "joints": list(setpoints.joint_names), "units": list(setpoints.units)}
+    names = {"pose": list(setpoints.pose_names), "joints": list(setpoints.joint_names)}
+    header = {**setpoints.header, **names, "units": list(setpoints.units)}
     lines = [f"# {FORMAT}", *(f"# {name}: {json.dumps(value, allow_nan=False)}" for name, value in header.items())]
     lines.append(",".join(setpoints.columns))
     lines.extend(",".join(map(repr, row)) for row in table.tolist())
@@ -69,11 +70,12 @@ def read_setpoints(file: FilePath | str) -> Setpoints:
     if first != f"# {FORMAT}":
         raise SetpointFileError(file, 1, first, f"# {FORMAT}")
     header = _read_header(file, lines)
-    names, units = header.pop("joints"), header.pop("units")
-    above = len(header) + 3  # the format's line, joints and units
-    joint_units = units[1 + len(SCHOENFLIES) :][: len(names)]
+    pose_names, names, units = (header.pop(name) for name in ("pose", "joints", "units"))
+    above = len(header) + 4  # the format's line, pose, joints and units
+    joint_units = units[1 + len(pose_names) :][: len(names)]
+    width = 1 + len(pose_names) + 4 * len(names)
     try:
-        empty = Setpoints.of_table(np.zeros((0, 5 + 4 * len(names))), names, joint_units, header)
+        empty = Setpoints.of_table(np.zeros((0, width)), pose_names, names, joint_units, header)
     except InvalidValue as error:
         raise SetpointFileError(file, above, f"units {units}", error.expected) from error
     if units != list(empty.units):
@@ -85,7 +87,7 @@ def read_setpoints(file: FilePath | str) -> Setpoints:
         [_read_row(file, above + 2 + k, line, len(empty.columns)) for k, line in enumerate(lines[above + 1 :])]
     )
     _require_periods(file, above + 2, table, header)
-    return Setpoints.of_table(table, names, joint_units, header)
+    return Setpoints.of_table(table, pose_names, names, joint_units, header)
 
 
 def _read_header(file: FilePath, lines: list[str]) -> dict[str, Any]:
@@ -113,6 +115,7 @@ def _are(kind: type, values: object) -> bool:
 _NEEDED: dict[str, tuple[Callable[[Any], bool], str]] = {
     "period [s]": (lambda v: type(v) is float and 0.0 < v < math.inf, "a finite time > 0"),
     "periods": (lambda v: _are(int, v) and min(v) > 0, "counts > 0"),
+    "pose": (lambda v: _are(str, v), "names"),
     "joints": (lambda v: _are(str, v), "names"),
     "units": (lambda v: _are(str, v), "units"),
 }

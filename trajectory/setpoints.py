@@ -13,8 +13,8 @@ from kinematics import InvalidShape, InvalidValue, Mechanism
 from kinematics.drives import from_actuators
 from trajectory.cycle import Cycle, Piece, periods_of
 from trajectory.limits import Limits
-from trajectory.motion import Motion, motion_along
-from trajectory.path import SCHOENFLIES, Array
+from trajectory.motion import Motion, motion_of
+from trajectory.path import Array, places
 
 CONVENTIONS = (
     "one row a period; the last row of a cycle is the first of the next one",
@@ -34,9 +34,10 @@ class Setpoints:
 
     Attributes:
         time: (k,) [s].
-        pose: (k, 4) x, y, z, theta.
+        pose: (k, n).
         joints, speed, acceleration: (k, m) the joints and their time derivatives.
         torque: (k, m) of the drives.
+        pose_names: (n,) the tool point's coordinates first.
         joint_names: (m,).
         joint_units: (m,) rad or m.
         header: plain data on what the set-points are for, by name.
@@ -48,6 +49,7 @@ class Setpoints:
     speed: Array
     acceleration: Array
     torque: Array
+    pose_names: tuple[str, ...]
     joint_names: tuple[str, ...]
     joint_units: tuple[str, ...]
     header: Mapping[str, Any]
@@ -55,7 +57,7 @@ class Setpoints:
     def __post_init__(self) -> None:
         rows = self.time.shape[0]
         groups = dict.fromkeys(("joints", "speed", "acceleration", "torque"), self.joint_names)
-        for name, columns in {"pose": SCHOENFLIES, **groups}.items():
+        for name, columns in {"pose": self.pose_names, **groups}.items():
             if getattr(self, name).shape != (rows, len(columns)):
                 raise InvalidShape(f"Setpoints {name}", columns, getattr(self, name).shape)
         if len(self.joint_units) != len(self.joint_names) or not set(self.joint_units) <= {"rad", "m"}:
@@ -65,31 +67,36 @@ class Setpoints:
     def columns(self) -> tuple[str, ...]:
         """Names of the columns of `table`."""
         groups = ("", "_speed", "_acceleration", "_torque")
-        return ("t", *SCHOENFLIES, *(f"{name}{group}" for group in groups for name in self.joint_names))
+        return ("t", *self.pose_names, *(f"{name}{group}" for group in groups for name in self.joint_names))
 
     @property
     def units(self) -> tuple[str, ...]:
         """Units of the columns of `table`."""
+        of_tool = places(self.pose_names)
+        of_pose = ["m"] * of_tool + ["rad"] * (len(self.pose_names) - of_tool)
         effort = ["N m" if unit == "rad" else "N" for unit in self.joint_units]
         rates = (f"{unit}{per}" for per in ("", "/s", "/s^2") for unit in self.joint_units)
-        return ("s", "m", "m", "m", "rad", *rates, *effort)
+        return ("s", *of_pose, *rates, *effort)
 
     def table(self) -> Array:
-        """(k, 5 + 4 m) all columns side by side."""
+        """(k, 1 + n + 4 m) all columns side by side."""
         parts = (self.time[:, None], self.pose, self.joints, self.speed, self.acceleration, self.torque)
         return np.concatenate(parts, axis=1)
 
     @classmethod
     def of_table(
-        cls, table: Array, joint_names: Sequence[str], joint_units: Sequence[str], header: Mapping[str, Any]
+        cls,
+        table: Array,
+        pose_names: Sequence[str],
+        joint_names: Sequence[str],
+        joint_units: Sequence[str],
+        header: Mapping[str, Any],
     ) -> Setpoints:
-        """From the columns side by side (k, 5 + 4 m)."""
-        m = len(joint_names)
-        edges = [1, 5, 5 + m, 5 + 2 * m, 5 + 3 * m]
-        time, pose, joints, speed, acceleration, torque = np.split(table, edges, axis=1)
-        return cls(
-            time[:, 0], pose, joints, speed, acceleration, torque, tuple(joint_names), tuple(joint_units), dict(header)
-        )
+        """From the columns side by side (k, 1 + n + 4 m)."""
+        edges = 1 + len(pose_names) + len(joint_names) * np.arange(4)
+        time, pose, joints, speed, acceleration, torque = np.split(table, [1, *edges], axis=1)
+        names = (tuple(pose_names), tuple(joint_names), tuple(joint_units))
+        return cls(time[:, 0], pose, joints, speed, acceleration, torque, *names, dict(header))
 
     def require_consistent(self, robot: Mechanism) -> None:
         """Check that these set-points are for this robot: its geometry, and joints that belong to the poses.
@@ -123,20 +130,21 @@ def cycle_setpoints(cycle: Cycle, period: float, joint_units: Sequence[str]) -> 
         LimitsExceeded: the stretched cycle fails its verification.
     """
     whole = cycle.stretched_to(period)
-    counts = [periods_of(piece.timed.law.duration, period) for piece in whole.pieces]
+    counts = [periods_of(piece.duration, period) for piece in whole.pieces]
     parts = []
     for piece, count in zip(whole.pieces, counts, strict=True):
         motion = _sampled(whole, piece, count, last=piece is whole.pieces[-1])
         parts.append(np.concatenate([motion.tool.pose, *motion.joints[:3], motion.torque], axis=1))
     time = np.round(np.arange(sum(counts) + 1) * period, 12)
     table = np.concatenate([time[:, None], np.concatenate(parts)], axis=1)
-    return Setpoints.of_table(table, cycle.robot.actuator_names, joint_units, _header(cycle, whole, period, counts))
+    names = (cycle.robot.pose_names, cycle.robot.actuator_names)
+    return Setpoints.of_table(table, *names, joint_units, _header(cycle, whole, period, counts))
 
 
 def _sampled(cycle: Cycle, piece: Piece, count: int, last: bool) -> Motion:
     """Motion of a piece at its periods; its end is the next piece's start unless it is the last one."""
-    times = np.linspace(0.0, piece.timed.law.duration, count + 1)[: count + 1 if last else count]
-    return motion_along(cycle.robot, piece.path, piece.timed.law.at(times), piece.payload)
+    times = np.linspace(0.0, piece.duration, count + 1)[: count + 1 if last else count]
+    return motion_of(cycle.robot, piece.motion.at(times), piece.payload)
 
 
 def robot_header(robot: Mechanism, limits: Limits) -> dict[str, Any]:
@@ -156,14 +164,15 @@ def robot_header(robot: Mechanism, limits: Limits) -> dict[str, Any]:
 
 def _header(before: Cycle, after: Cycle, period: float, counts: Sequence[int]) -> dict[str, Any]:
     header = robot_header(before.robot, before.limits) | {
-        "laws": [piece.timed.law.name for piece in before.pieces],
+        "laws": [piece.motion.name for piece in before.pieces],
         "period [s]": float(period),
         "periods": list(counts),
         "cycle time before stretching [s]": before.duration,
         "cycle time after stretching [s]": after.duration,
         "payloads [kg]": [float(piece.payload) for piece in before.pieces],
     }
-    header |= {f"path {name}": value for name, value in before.pieces[0].path.as_dict().items()}
+    header |= {f"path {name}": value for name, value in before.path.as_dict().items()}
+    header["proved margins"] = before.certificate.margins
     for k, piece in enumerate(after.pieces):
         found = piece.timed.verification
         header[f"peak over limit, piece {k + 1}, after stretching"] = dict(found.peak_over_limit)

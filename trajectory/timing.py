@@ -127,19 +127,6 @@ class TimeLaw:
             jerk=self.jerk / factor**3,
         )
 
-    def scaled_to(self, duration: float) -> TimeLaw:
-        """The same path travelled in the given time [s]."""
-        return self.stretched(duration / self.duration)
-
-    def acceleration_jump(self) -> tuple[float, float]:
-        """Time [s] and size [m/s^2] of the largest jump of s'' at a knot, those from and to rest at the ends included.
-
-        A jump is an impulse of the jerk, so jerk means something only where there is none.
-        """
-        ends = self.acceleration + self.jerk * np.diff(self.times)
-        jumps = np.abs(np.append(self.acceleration, 0.0) - np.concatenate([[0.0], ends]))
-        return float(self.times[jumps.argmax()]), float(jumps.max())
-
     def _in_interval(self, interval: Array, since: Array) -> PathMotion:
         s, v, a, j = (x[interval] for x in (self.position, self.speed, self.acceleration, self.jerk))
         position = s + since * (v + since * (a / 2 + since * j / 6))

@@ -29,7 +29,8 @@ from kinematics.dynamics import inverse_dynamics
 from kinematics.motion import actuator_motion
 from trajectory.errors import TimingFailed
 from trajectory.limits import Limits
-from trajectory.path import Array, Path, require_poses_of, require_smooth
+from trajectory.path import Array, Path, places, require_poses_of, require_smooth
+from trajectory.timed import TimedPath
 from trajectory.timing import TimeLaw
 
 LEAST_INTERVALS = 1000
@@ -38,7 +39,7 @@ Coefficients = tuple[Array, Array, Array]  # a, b, c, each (N + 1, rows): |a u +
 Parameters = tuple[Array | None, ...]
 
 
-def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = 2000) -> TimeLaw:
+def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = 2000) -> TimedPath:
     """The fastest law from rest to rest on the path.
 
     Args:
@@ -68,7 +69,7 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     bound, rows = _path_limits(robot, derivatives, limits, payload)
     asked = {**limits.as_dict(), "payload": payload, "intervals": intervals, "path": path.as_dict()}
     speed = _solve(grid, bound, rows, asked)
-    return TimeLaw.constant_acceleration("toppra", path.length * grid, path.length * speed)
+    return TimedPath(path, TimeLaw.constant_acceleration("toppra", path.length * grid, path.length * speed))
 
 
 def _path_limits(
@@ -82,7 +83,7 @@ def _path_limits(
     speed = limits.of_joints("speed", count)
     with np.errstate(divide="ignore"):  # joints at rest bound nothing; `_solve` refuses what is not finite
         highest = (np.abs(joints.first) / speed).max(axis=-1) ** -2.0
-    tool = len(robot.pose_names) - len(robot.rotations)
+    tool = places(robot.pose_names)
     tangent = np.linalg.norm(first[:, :tool], axis=-1)
     if limits.tool_speed is not None:
         highest = np.minimum(highest, (limits.tool_speed / tangent) ** 2)

@@ -1,4 +1,4 @@
-"""Independent verification of a timed path: densely in time, between the gridpoints and on both sides of each knot.
+"""Independent verification of a timed motion: densely in time, between the gridpoints and on both sides of each knot.
 
 Nothing here uses the coefficients from which a law was made: the pose and its time derivatives come from the path and
 the law, the joints from the inverse model's derivatives, the torque from inverse dynamics. The joints' speed must also
@@ -14,12 +14,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics import InvalidValue, Mechanism
+from kinematics import Mechanism
 from kinematics.drives import from_actuators
 from trajectory.limits import Limits
-from trajectory.motion import Motion, motion_along
-from trajectory.path import Array, Path, require_poses_of
-from trajectory.timing import TimeLaw
+from trajectory.motion import Motion, motion_of
+from trajectory.path import Array, places
+from trajectory.timed import TimedMotion
 
 LEAST_PARTS = 10  # of each interval of the law
 LEAST_STEPS = 10_000  # of the whole path, about
@@ -109,32 +109,27 @@ class Verification:
         ]
 
 
-def verify(robot: Mechanism, path: Path, law: TimeLaw, limits: Limits, payload: float) -> Verification:
-    """Measure a timed path against its limits.
+def verify(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float) -> Verification:
+    """Measure a timed motion against its limits.
 
     Args:
-        robot: any mechanism with the path's kind of pose.
-        path: of the pose.
-        law: how it is travelled; from rest to rest over the whole path.
-        limits: of joints and tool. Where s'' jumps, a jerk limit fails with an infinite peak.
+        robot: any mechanism with the motion's kind of pose.
+        timed: the motion, from rest to rest.
+        limits: of joints and tool. Where the acceleration jumps, a jerk limit fails with an infinite peak.
         payload: mass at the tool [kg].
 
     Raises:
-        InvalidValue: the law's arc length is not the path's, or another kind of pose.
+        InvalidShape: another kind of pose.
     """
-    require_poses_of(robot, path)
-    ends = (law.position[0], law.position[-1])
-    if not np.allclose(ends, (0.0, path.length), rtol=0.0, atol=1e-9 * path.length):
-        raise InvalidValue("arc length of the time law", ends, f"(0, {path.length:.9g}) m, the path's")
-    times, along = law.within(sampling(law))
-    motion = motion_along(robot, path, along, payload)
-    peaks, notes = _peaks(robot, law, times, motion, limits)
-    rms = np.sqrt(_integrals(law, motion.torque**2).sum(axis=0) / law.duration)
+    times, tool = timed.within(sampling(timed))
+    motion = motion_of(robot, tool, payload)
+    peaks, notes = _peaks(robot, times, motion, limits)
+    rms = np.sqrt(_integrals(times, motion.torque**2).sum(axis=0) / timed.duration)
     return Verification(
-        law=law.name,
-        duration=law.duration,
+        law=timed.name,
+        duration=timed.duration,
         peaks=peaks,
-        residuals=_residuals(robot, path, motion) | _integral_residuals(law, motion),
+        residuals=_residuals(robot, timed, motion) | _integral_residuals(times, motion),
         reach=_least(robot.margin("reach", motion.tool.pose)),
         rms_torque=rms,
         rms_over_peak=rms / np.abs(motion.torque).max(axis=(0, 1)),
@@ -142,16 +137,14 @@ def verify(robot: Mechanism, path: Path, law: TimeLaw, limits: Limits, payload: 
     )
 
 
-def sampling(law: TimeLaw) -> Array:
-    """(k,) fractions of each interval: at least ten parts, and a step at most about 1 / `LEAST_STEPS` of the path."""
-    share = np.diff(law.position).max() / np.ptp(law.position)
+def sampling(timed: TimedMotion) -> Array:
+    """(j,) fractions of each interval: at least ten parts, and a step at most about 1 / `LEAST_STEPS` of the way."""
+    share = np.diff(timed.progress).max()
     parts = LEAST_PARTS * max(1, math.ceil(LEAST_STEPS / LEAST_PARTS * share))
     return np.linspace(0.0, 1.0, parts + 1)
 
 
-def _peaks(
-    robot: Mechanism, law: TimeLaw, times: Array, motion: Motion, limits: Limits
-) -> tuple[tuple[Peak, ...], tuple[str, ...]]:
+def _peaks(robot: Mechanism, times: Array, motion: Motion, limits: Limits) -> tuple[tuple[Peak, ...], tuple[str, ...]]:
     names = robot.actuator_names
 
     def of_joints(quantity: str, values: Array, field: str) -> Peak:
@@ -163,7 +156,7 @@ def _peaks(
         return Peak(quantity, names[joint], float(times[row, part]), value, bound, ratio)
 
     def of_tool(quantity: str, values: Array, limit: float | None) -> Peak:
-        size = np.linalg.norm(values[..., :3], axis=-1)
+        size = np.linalg.norm(values[..., : places(robot.pose_names)], axis=-1)
         where = np.unravel_index(int(size.argmax()), size.shape)
         ratio = None if limit is None else float(size[where]) / limit
         return Peak(quantity, None, float(times[where]), float(size[where]), limit, ratio)
@@ -175,22 +168,32 @@ def _peaks(
         of_tool("tool speed", motion.tool.velocity, limits.tool_speed),
         of_tool("tool acceleration", motion.tool.acceleration, limits.tool_acceleration),
     ]
-    jump_time, jump = law.acceleration_jump()
-    if jump <= _SMOOTH * np.abs(law.acceleration).max():
+    jump_time, jump = _jump(times, motion.joints.second)
+    if jump <= _SMOOTH * np.abs(motion.joints.second).max():
         peaks.append(of_joints("joint jerk", motion.joints.third, "jerk"))
         return tuple(peaks), ()
     if limits.jerk is not None:
         peaks.append(Peak("joint jerk", None, jump_time, math.inf, float(np.min(limits.jerk)), math.inf))
-    return tuple(peaks), (f"joint jerk left out: s'' jumps by up to {jump:.4g} m/s^2, where the jerk is an impulse",)
+    return tuple(peaks), (
+        f"joint jerk left out: a joint acceleration jumps by {jump:.4g}, where the jerk is an impulse",
+    )
 
 
-def _residuals(robot: Mechanism, path: Path, motion: Motion) -> dict[str, float]:
+def _jump(times: Array, acceleration: Array) -> tuple[float, float]:
+    """Time and size of the joints' largest jump of acceleration at a knot, from and to rest at the ends too."""
+    rest = np.zeros_like(acceleration[:1, 0])
+    after, before = np.concatenate([acceleration[:, 0], rest]), np.concatenate([rest, acceleration[:, -1]])
+    jumps = np.abs(after - before).max(axis=-1)
+    return float(np.append(times[:, 0], times[-1, -1])[jumps.argmax()]), float(jumps.max())
+
+
+def _residuals(robot: Mechanism, timed: TimedMotion, motion: Motion) -> dict[str, float]:
     pose, joints = motion.tool.pose, from_actuators(robot, motion.joints.position)
     knots, knot_joints = pose[:, 0], joints[:, 0]
     by_forward = robot.forward(knot_joints) - knots
     turns = list(robot.rotations)
     by_forward[..., turns] = np.remainder(by_forward[..., turns] + math.pi, 2 * math.pi) - math.pi
-    (start,), (end,) = path.evaluate(np.array(0.0), 0), path.evaluate(np.array(path.length), 0)
+    start, end = timed.ends
     return {
         "start pose": _largest(pose[0, 0] - start),
         "end pose": _largest(pose[-1, -1] - end),
@@ -201,24 +204,24 @@ def _residuals(robot: Mechanism, path: Path, motion: Motion) -> dict[str, float]
     }
 
 
-def _integral_residuals(law: TimeLaw, motion: Motion) -> dict[str, float]:
+def _integral_residuals(times: Array, motion: Motion) -> dict[str, float]:
     """What the joints' derivatives, integrated from the start, do not explain; a cusp at speed v leaves about 2 v."""
     joints = motion.joints
-    jump = joints.first[:, -1] - joints.first[0, 0] - _integrals(law, joints.second).cumsum(axis=0)
-    gap = joints.position[:, -1] - joints.position[0, 0] - _integrals(law, joints.first).cumsum(axis=0)
+    jump = joints.first[:, -1] - joints.first[0, 0] - _integrals(times, joints.second).cumsum(axis=0)
+    gap = joints.position[:, -1] - joints.position[0, 0] - _integrals(times, joints.first).cumsum(axis=0)
     return {
         "integral of acceleration": _largest(jump) / _largest(joints.first),
         "integral of speed": _largest(gap) / float(np.ptp(joints.position, axis=(0, 1)).max()),
     }
 
 
-def _integrals(law: TimeLaw, values: Array) -> Array:
-    """(n, k, m) values at equal parts of each interval -> (n, m) integrals over time, by Simpson's rule."""
+def _integrals(times: Array, values: Array) -> Array:
+    """(k, j, m) values at equal parts of each interval -> (k, m) integrals over its time, by Simpson's rule."""
     parts = values.shape[1] - 1
     weights = np.full(parts + 1, 2.0)
     weights[1::2] = 4.0
     weights[[0, -1]] = 1.0
-    return np.einsum("nkm,k,n->nm", values, weights / (3 * parts), np.diff(law.times))
+    return np.einsum("nkm,k,n->nm", values, weights / (3 * parts), times[:, -1] - times[:, 0])
 
 
 def _largest(values: Array) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kinematics import Heli4
-from trajectory import AdeptCycle, Cycle, Limits, Path, TimeLaw, there_and_back, time_optimal
+from trajectory import AdeptCycle, Cycle, Limits, Path, TimedPath, there_and_back, time_optimal
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ def limits() -> Limits:
 
 
 @pytest.fixture(scope="session")
-def law(robot: Heli4, path: AdeptCycle, limits: Limits) -> TimeLaw:
+def timed(robot: Heli4, path: AdeptCycle, limits: Limits) -> TimedPath:
     return time_optimal(robot, path, limits, payload=1.0)
 
 

@@ -76,13 +76,6 @@ def test_stretching_divides_each_derivative_by_its_power_of_the_factor(
     for k, (a, b) in enumerate(zip(law.at(t), slow, strict=True)):
         inner = slice(1, -1) if k < 2 else np.abs(t[:, None] - law.times).min(axis=1) > 1e-9
         assert a[inner] == pytest.approx(b[inner] * 1.7**k, abs=1e-12)
-    assert law.scaled_to(3.0).duration == pytest.approx(3.0, rel=1e-15)
-
-
-def test_only_a_law_without_jumps_has_a_jerk(bang_bang: TimeLaw, smooth: TimeLaw) -> None:
-    assert smooth.acceleration_jump()[1] == 0.0
-    time, jump = bang_bang.acceleration_jump()
-    assert (time, jump) == pytest.approx((0.25, 16.0))
 
 
 def test_arrays_of_a_law_are_read_only_copies(smooth: TimeLaw) -> None:

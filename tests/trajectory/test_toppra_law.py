@@ -10,47 +10,49 @@ import pytest
 
 from kinematics import Heli4, InvalidValue, UnreachablePose
 from kinematics.dynamics import inverse_dynamics
-from trajectory import AdeptCycle, Limits, Reversed, RoughPath, TimeLaw, TimingFailed, time_optimal, verify
+from trajectory import AdeptCycle, Limits, Reversed, RoughPath, TimedPath, TimingFailed, time_optimal, verify
 
 FREE = 1e6  # a limit that never matters
 
 
-def test_the_reference_half_cycle_takes_127_ms(law: TimeLaw) -> None:
-    assert law.duration == pytest.approx(0.1274, abs=1e-4)
+def test_the_reference_half_cycle_takes_127_ms(timed: TimedPath) -> None:
+    assert timed.duration == pytest.approx(0.1274, abs=1e-4)
 
 
-def test_the_half_cycle_converges_with_the_grid(robot: Heli4, path: AdeptCycle, limits: Limits, law: TimeLaw) -> None:
+def test_the_half_cycle_converges_with_the_grid(
+    robot: Heli4, path: AdeptCycle, limits: Limits, timed: TimedPath
+) -> None:
     coarse, fine = (time_optimal(robot, path, limits, 1.0, n).duration for n in (1000, 4000))
-    first, second = coarse - law.duration, law.duration - fine
+    first, second = coarse - timed.duration, timed.duration - fine
     assert 0 < second < 0.7 * first < 1e-4
 
 
 def test_a_straight_line_under_a_tool_acceleration_cap_is_bang_bang(robot: Heli4, straight: type) -> None:
     line = straight()
-    law = time_optimal(robot, line, Limits(speed=FREE, tool_acceleration=50.0), 1.0)
-    assert law.duration == pytest.approx(2 * math.sqrt(line.length / 50.0), rel=1e-4)
+    timed = time_optimal(robot, line, Limits(speed=FREE, tool_acceleration=50.0), 1.0)
+    assert timed.duration == pytest.approx(2 * math.sqrt(line.length / 50.0), rel=1e-4)
 
 
 def test_a_straight_line_under_a_tool_speed_cap_too_is_a_trapezoid(robot: Heli4, straight: type) -> None:
     line = straight()
-    law = time_optimal(robot, line, Limits(speed=FREE, tool_speed=1.0, tool_acceleration=50.0), 1.0)
-    assert law.duration == pytest.approx(line.length / 1.0 + 1.0 / 50.0, rel=1e-4)
-    assert law.speed.max() == pytest.approx(1.0, rel=1e-6)
+    timed = time_optimal(robot, line, Limits(speed=FREE, tool_speed=1.0, tool_acceleration=50.0), 1.0)
+    assert timed.duration == pytest.approx(line.length / 1.0 + 1.0 / 50.0, rel=1e-4)
+    assert timed.law.speed.max() == pytest.approx(1.0, rel=1e-6)
 
 
 def test_joint_speed_alone_is_saturated_along_the_way(robot: Heli4, path: AdeptCycle) -> None:
     limits = Limits(speed=(3.0, 4.0, 5.0, 6.0), acceleration=5000.0)
-    law = time_optimal(robot, path, limits, 1.0)
-    middle = law.at(np.linspace(0.2, 0.8, 50) * law.duration)
+    timed = time_optimal(robot, path, limits, 1.0)
+    middle = timed.law.at(np.linspace(0.2, 0.8, 50) * timed.duration)
     _, first, *_ = path.evaluate(middle.position, 1)
     pose = path.evaluate(middle.position, 0)[0]
     rates = np.einsum("kij,kj->ki", robot.inverse_jacobian(pose), first) * middle.speed[:, None]
     assert (np.abs(rates) / [3.0, 4.0, 5.0, 6.0]).max(axis=-1) == pytest.approx(1.0, abs=1e-3)
 
 
-def test_some_limit_is_reached_at_every_instant(robot: Heli4, path: AdeptCycle, law: TimeLaw) -> None:
+def test_some_limit_is_reached_at_every_instant(robot: Heli4, path: AdeptCycle, timed: TimedPath) -> None:
     """A time-optimal law on a fixed path is always on the edge of what it may, but for the grid and the switches."""
-    along = law.at(np.linspace(0.0, law.duration, 2001)[1:-1])
+    along = timed.law.at(np.linspace(0.0, timed.duration, 2001)[1:-1])
     pose, first, second = path.evaluate(along.position, 2)
     v, a = along.speed[:, None], along.acceleration[:, None]
     torque = inverse_dynamics(robot, 1.0, pose, first * v, second * v**2 + first * a)
@@ -61,18 +63,18 @@ def test_some_limit_is_reached_at_every_instant(robot: Heli4, path: AdeptCycle, 
     assert used.max() < 1.001
 
 
-def test_the_way_back_takes_as_long(robot: Heli4, path: AdeptCycle, limits: Limits, law: TimeLaw) -> None:
+def test_the_way_back_takes_as_long(robot: Heli4, path: AdeptCycle, limits: Limits, timed: TimedPath) -> None:
     back = time_optimal(robot, Reversed(path), limits, 1.0)
-    assert back.duration == pytest.approx(law.duration, rel=1e-5)
+    assert back.duration == pytest.approx(timed.duration, rel=1e-5)
 
 
 def test_less_torque_more_payload_and_sharper_corners_take_longer(
-    robot: Heli4, path: AdeptCycle, limits: Limits, law: TimeLaw
+    robot: Heli4, path: AdeptCycle, limits: Limits, timed: TimedPath
 ) -> None:
-    assert time_optimal(robot, path, replace(limits, torque=110.0), 1.0).duration > 1.02 * law.duration
-    assert time_optimal(robot, path, limits, 2.0).duration > 1.02 * law.duration
+    assert time_optimal(robot, path, replace(limits, torque=110.0), 1.0).duration > 1.02 * timed.duration
+    assert time_optimal(robot, path, limits, 2.0).duration > 1.02 * timed.duration
     sharp = time_optimal(robot, replace(path, blend=0.002), limits, 1.0).duration
-    assert sharp / law.duration == pytest.approx(1 / 0.87, abs=0.02)
+    assert sharp / timed.duration == pytest.approx(1 / 0.87, abs=0.02)
 
 
 @pytest.mark.parametrize(
@@ -89,8 +91,8 @@ def test_every_limit_is_kept_and_the_tightest_is_used(
     robot: Heli4, path: AdeptCycle, limits: Limits, more: dict[str, object]
 ) -> None:
     tighter = replace(limits, **more)
-    law = time_optimal(robot, path, tighter, 1.0)
-    ratios = verify(robot, path, law, tighter, 1.0).peak_over_limit
+    timed = time_optimal(robot, path, tighter, 1.0)
+    ratios = verify(robot, timed, tighter, 1.0).peak_over_limit
     assert max(ratios.values()) == pytest.approx(1.0, abs=2e-3)
     assert set(ratios) >= {"joint speed", "torque"}
 
@@ -142,7 +144,7 @@ def test_another_kind_of_pose_is_refused(path: AdeptCycle, limits: Limits) -> No
     class Turned(Heli4):
         pose_names = ("x", "y", "z", "phi")
 
-    with pytest.raises(InvalidValue, match="pose of Turned"):
+    with pytest.raises(InvalidValue, match="path for Turned"):
         time_optimal(Turned(), path, limits, 1.0)
 
 

@@ -1,0 +1,119 @@
+"""Timed motions: the pose as an exact function of time, whatever method found it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Protocol, Self
+
+import numpy as np
+
+from kinematics import InvalidValue
+from trajectory.motion import PoseMotion, pose_motion
+from trajectory.path import Array, Path
+from trajectory.timing import TimeLaw
+
+_ROUNDING = 1e-9  # of the length
+
+
+class TimedMotion(Protocol):
+    """A motion of the pose from rest to rest, smooth inside each of its intervals of time."""
+
+    @property
+    def name(self) -> str:
+        """Of the method that found it."""
+
+    @property
+    def times(self) -> Array:
+        """(k + 1,) knots, the first at 0 [s]."""
+
+    @property
+    def progress(self) -> Array:
+        """(k + 1,) how far the motion is at each knot, rising from 0 to 1."""
+
+    @property
+    def duration(self) -> float:
+        """T [s]."""
+
+    @property
+    def ends(self) -> Array:
+        """(2, n) the poses that were asked for at the start and at the end."""
+
+    def at(self, t: Array) -> PoseMotion:
+        """The motion at times (...,); the right-hand limit at a knot, the left-hand one at T.
+
+        Raises:
+            InvalidValue: a time outside [0, T] by more than rounding, or not a number.
+        """
+
+    def within(self, fractions: Array) -> tuple[Array, PoseMotion]:
+        """Every interval at fractions (j,) of its own time, so that 0 and 1 give its one-sided limits.
+
+        Returns:
+            Times (k, j) [s] and the motion there, (k, j, n) each.
+        """
+
+    def stretched(self, factor: float) -> Self:
+        """The same way travelled `factor` times as long.
+
+        Raises:
+            InvalidValue: the factor is not finite and positive.
+        """
+
+
+@dataclass(frozen=True, eq=False)
+class TimedPath:
+    """A path travelled by a time law.
+
+    Attributes:
+        path: of the pose, by arc length.
+        law: arc length in time, over the whole path.
+
+    Raises:
+        InvalidValue: the law's arc length is not the path's.
+    """
+
+    path: Path
+    law: TimeLaw
+
+    def __post_init__(self) -> None:
+        ends = (self.law.position[0], self.law.position[-1])
+        if not np.allclose(ends, (0.0, self.path.length), rtol=0.0, atol=_ROUNDING * self.path.length):
+            raise InvalidValue("arc length of the time law", ends, f"(0, {self.path.length:.9g}) m, the path's")
+
+    @property
+    def name(self) -> str:
+        """Of the law."""
+        return self.law.name
+
+    @property
+    def times(self) -> Array:
+        """(k + 1,) knots of the law [s]."""
+        return self.law.times
+
+    @property
+    def progress(self) -> Array:
+        """(k + 1,) share of the arc length at each knot."""
+        return self.law.position / self.law.position[-1]
+
+    @property
+    def duration(self) -> float:
+        """T [s]."""
+        return self.law.duration
+
+    @property
+    def ends(self) -> Array:
+        """(2, n) both ends of the path."""
+        return self.path.evaluate(np.array([0.0, self.path.length]), 0)[0]
+
+    def at(self, t: Array) -> PoseMotion:
+        """As `TimedMotion.at`."""
+        return pose_motion(self.path, self.law.at(t))
+
+    def within(self, fractions: Array) -> tuple[Array, PoseMotion]:
+        """As `TimedMotion.within`."""
+        times, along = self.law.within(fractions)
+        return times, pose_motion(self.path, along)
+
+    def stretched(self, factor: float) -> TimedPath:
+        """As `TimedMotion.stretched`."""
+        return replace(self, law=self.law.stretched(factor))
