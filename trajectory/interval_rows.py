@@ -11,6 +11,7 @@ outward, bounds f', from bounds of the path's derivatives.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import casadi as ca
@@ -101,6 +102,7 @@ def _path_boxes(path: Path, edges: Array) -> tuple[list[Array], Array, Array]:
     return list(derivatives[:3]), low, high
 
 
+@lru_cache(maxsize=16)
 def _programs(robot: Mechanism, payload: float) -> tuple[Program, BoxProgram]:
     """Torque's a, b, c and w and the actuators' first two derivatives by s, (m,) each side by side; their slopes."""
     model = robot.model()
