@@ -25,6 +25,7 @@ from trajectory.lower_bound import lower_bound
 from trajectory.motion import Motion, PoseMotion, motion_of, pose_motion
 from trajectory.path import Part, Path, Reversed, require_smooth
 from trajectory.path_certificate import PathCertificate, certify_path
+from trajectory.pose_spline import PoseSpline
 from trajectory.repair import Repaired, repair
 from trajectory.rounded import RoundedPath
 from trajectory.setpoint_file import read_setpoints, write_setpoints
@@ -36,9 +37,11 @@ from trajectory.waypoint_file import read_waypoints
 
 if TYPE_CHECKING:
     from trajectory.approach import Approach, plan_approach
+    from trajectory.free_law import free_motion
     from trajectory.toppra_law import time_optimal
 
 _LAZY = {
+    "free_motion": "trajectory.free_law",
     "Approach": "trajectory.approach",
     "plan_approach": "trajectory.approach",
     "time_optimal": "trajectory.toppra_law",
@@ -69,6 +72,7 @@ __all__ = [
     "Peak",
     "Piece",
     "PoseMotion",
+    "PoseSpline",
     "Repaired",
     "Reversed",
     "RoughPath",
@@ -83,6 +87,7 @@ __all__ = [
     "WaypointFileError",
     "certify_path",
     "cycle_setpoints",
+    "free_motion",
     "lower_bound",
     "motion_of",
     "plan_approach",
