@@ -70,11 +70,18 @@ def _named(pose: Array, velocity: Array, acceleration: Array) -> list[tuple[str,
 
 
 def _build(robot: Mechanism, model: Model, payload: float) -> Build:
-    rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration")]
+    velocity, acceleration = (ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration"))
+    _, speed = derivatives_along(model.drives @ model.inverse, model.pose, [velocity])
+    torque = torques(robot, payload, velocity, acceleration) + _friction(robot, speed)
+    return [model.pose, velocity, acceleration], [torque]
+
+
+def torques(robot: Mechanism, payload: float, velocity: ca.SX, acceleration: ca.SX) -> ca.SX:
+    """(m,) of `inverse_dynamics` with the least norm and without friction, in the model's `pose` and `geometry`."""
+    model, rates = robot.model(), [velocity, acceleration]
     transposed, det = adjugate(model.drives.T)  # actuators and joints do the same work
     joint_motion = derivatives_along(model.inverse, model.pose, rates)[1:]
-    torques = transposed @ _torques(robot, model, payload, rates, joint_motion) / det
-    return [model.pose, *rates], [torques + _friction(robot, model.drives @ joint_motion[0])]
+    return transposed @ _torques(robot, model, payload, rates, joint_motion) / det
 
 
 def _friction(robot: Mechanism, speed: ca.SX) -> ca.SX:

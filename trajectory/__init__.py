@@ -22,9 +22,11 @@ from trajectory.errors import (
 )
 from trajectory.files import CannotWrite, require_writable, write_files
 from trajectory.limits import Limits
+from trajectory.lower_bound import lower_bound
 from trajectory.motion import Motion, PoseMotion, motion_of, pose_motion
 from trajectory.path import Part, Path, Reversed, require_smooth
 from trajectory.path_certificate import PathCertificate, certify_path
+from trajectory.pose_spline import PoseSpline
 from trajectory.repair import Repaired, repair
 from trajectory.rounded import RoundedPath
 from trajectory.setpoint_file import read_setpoints, write_setpoints
@@ -35,11 +37,13 @@ from trajectory.verification import Peak, Verification, verify
 from trajectory.waypoint_file import read_waypoints
 
 if TYPE_CHECKING:
+    from trajectory.free_law import free_motion
     from trajectory.moves import Move, plan_move, plan_stop
     from trajectory.toppra_law import time_optimal
 
 _LAZY = {
     "Move": "trajectory.moves",
+    "free_motion": "trajectory.free_law",
     "plan_move": "trajectory.moves",
     "plan_stop": "trajectory.moves",
     "time_optimal": "trajectory.toppra_law",
@@ -71,6 +75,7 @@ __all__ = [
     "Peak",
     "Piece",
     "PoseMotion",
+    "PoseSpline",
     "Repaired",
     "Reversed",
     "RoughPath",
@@ -86,6 +91,8 @@ __all__ = [
     "certify_path",
     "cycle_setpoints",
     "emergency_stop",
+    "free_motion",
+    "lower_bound",
     "motion_of",
     "plan_move",
     "plan_stop",

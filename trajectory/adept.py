@@ -180,3 +180,7 @@ class AdeptCycle:
     def enclose(self, low: Array, high: Array) -> PathBox:
         """As `Path.enclose`."""
         return self.rounded.enclose(low, high)
+
+    def steepest_third(self, s: Array) -> Array:
+        """As `Path.steepest_third`."""
+        return self.rounded.steepest_third(s)

@@ -26,6 +26,11 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)  # exact to rounding: the
 _NODES, _WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2
 
 
+# The largest moduli on [0, 1] of the first three derivatives of S5, and of the fourth of S7.
+QUINTIC_MOST = (1.875, 5.7736, 60.0)
+SEPTIC_FOURTH = 840.0
+
+
 def quintic(u: Number) -> Number:
     """S5, (...,) in [0, 1] -> (...,)."""
     return u**3 * (10 + u * (-15 + 6 * u))

@@ -64,6 +64,9 @@ class Path(Protocol):
     def enclose(self, low: Array, high: Array) -> PathBox:
         """Bounds that hold everywhere on intervals (k,) of s, each between two neighbouring knots."""
 
+    def steepest_third(self, s: Array) -> Array:
+        """(k, n) bounds of the modulus of the fourth derivative on the whole pieces around arc lengths (k,)."""
+
     def split(self) -> tuple[Path, ...]:
         """Itself or, where the tangent jumps inside, its parts from one jump to the next, to be timed one by one."""
 
@@ -102,6 +105,10 @@ class Reversed:
         """As `Path.enclose`."""
         box = self.path.enclose(self.length - high, self.length - low)
         return PathBox(box.low, box.high, -box.first_high, -box.first_low)
+
+    def steepest_third(self, s: Array) -> Array:
+        """As `Path.steepest_third`."""
+        return self.path.steepest_third(self.length - s)
 
     def split(self) -> tuple[Path, ...]:
         """The path's own parts, the last one first."""
@@ -144,6 +151,10 @@ class Part:
     def enclose(self, low: Array, high: Array) -> PathBox:
         """As `Path.enclose`."""
         return self.path.enclose(self.start + low, self.start + high)
+
+    def steepest_third(self, s: Array) -> Array:
+        """As `Path.steepest_third`."""
+        return self.path.steepest_third(self.start + s)
 
     def split(self) -> tuple[Path, ...]:
         """As `Path.split`."""

@@ -17,7 +17,16 @@ import numpy as np
 
 from kinematics import InvalidValue
 from kinematics.interpreter import evaluate
-from trajectory.corner import corner_length, quintic, septic, septic_program, tangent_program, turned
+from trajectory.corner import (
+    QUINTIC_MOST,
+    SEPTIC_FOURTH,
+    corner_length,
+    quintic,
+    septic,
+    septic_program,
+    tangent_program,
+    turned,
+)
 from trajectory.errors import InvalidPath
 from trajectory.path import Array, Path, PathBox, checked_arc_length, pieces, places
 
@@ -103,6 +112,22 @@ class RoundedPath:
         slack, rate_slack = _SLACK * (1.0 + np.abs(most)), _SLACK * (1.0 + np.abs(first))
         return PathBox(least - slack, most + slack, slowest - rate_slack, fastest + rate_slack)
 
+    def steepest_third(self, s: Array) -> Array:
+        """As `Path.steepest_third`, from the largest derivatives of S5 and S7 on [0, 1].
+
+        With a, b, c the first three derivatives of the tangent's angle, the third one of the tangent has the
+        components c - a^3 and 3 a b.
+        """
+        piece, _ = self._within(s)
+        length, alpha = self._layout.lengths[piece], self._layout.alphas[piece]
+        a, b, c = (alpha * most / length**k for k, most in enumerate(QUINTIC_MOST, start=1))
+        tangent = np.hypot(c + a**3, 3 * a * b)[:, None]
+        bounds = [np.broadcast_to(tangent, (s.size, places(self.pose_names)))]
+        for at, values in self._angles:
+            fourth = SEPTIC_FOURTH * np.abs(np.diff(values)) / np.diff(at) ** 4
+            bounds.append(fourth[_span(at, s)][:, None])
+        return np.concatenate(bounds, axis=-1)
+
     def _tangent_bounds(self, tangent: Array, middle: Array, low: Array, high: Array) -> Array:
         """(2, k, p) bounds of the tangent, which is away from that in the middle by no more than it turns."""
         piece, _ = self._within(middle)
@@ -185,9 +210,14 @@ def _turn(first: Array, second: Array) -> tuple[float, Array]:
     return alpha, towards / size
 
 
+def _span(at: Array, s: Array) -> Array:
+    """Between which of the arc lengths at which an angle is given."""
+    return np.clip(np.searchsorted(at, s, side="right") - 1, 0, at.size - 2)
+
+
 def _angle(at: Array, values: Array, s: Array, order: int) -> list[Array]:
     """(..., 1) an angle and its derivatives by s."""
-    span = np.clip(np.searchsorted(at, s, side="right") - 1, 0, at.size - 2)
+    span = _span(at, s)
     extent, change = np.diff(at)[span], np.diff(values)[span][..., None]
     w = np.clip((s - at[span]) / extent, 0.0, 1.0)
     shares = evaluate(septic_program(), w[..., None], 1 / extent[..., None])
@@ -196,7 +226,7 @@ def _angle(at: Array, values: Array, s: Array, order: int) -> list[Array]:
 
 def _angle_bounds(at: Array, values: Array, low: Array, high: Array) -> tuple[Array, Array]:
     """(2, k) bounds of an angle, and of its rate, change times 140 w^3 (1 - w)^3, which rises up to w = 1/2."""
-    span = np.clip(np.searchsorted(at, 0.5 * low + 0.5 * high, side="right") - 1, 0, at.size - 2)
+    span = _span(at, 0.5 * low + 0.5 * high)
     extent, change = np.diff(at)[span], np.diff(values)[span]
     w = np.stack([np.clip((s - at[span]) / extent, 0.0, 1.0) for s in (low, high)])
     angle = values[span] + change * septic(w)

@@ -59,6 +59,9 @@ class TimedMotion(Protocol):
             InvalidValue: the factor is not finite and positive.
         """
 
+    def steepest_jerk(self, low: Array, high: Array) -> Array:
+        """(k, n) bounds of the modulus of the pose's fourth derivative between two times (k,), each of one interval."""
+
 
 @dataclass(frozen=True, eq=False)
 class TimedPath:
@@ -117,3 +120,29 @@ class TimedPath:
     def stretched(self, factor: float) -> TimedPath:
         """As `TimedMotion.stretched`."""
         return replace(self, law=self.law.stretched(factor))
+
+    def steepest_jerk(self, low: Array, high: Array) -> Array:
+        """As `TimedMotion.steepest_jerk`: the chain rule on p(s(t)), each term bounded."""
+        along, half = self.law.at(0.5 * low + 0.5 * high), (high - low) * (0.5 + _ROUNDING)
+        jerk = np.abs(along.jerk)
+        acceleration = np.abs(along.acceleration) + half * jerk
+        speed = along.speed + half * acceleration
+        away = half * speed
+        _, _, second, third = self.path.evaluate(along.position, 3)
+        first_s, last_s = (np.clip(along.position + d, 0.0, self.path.length) for d in (-away, away))
+        fourth = self._steepest_third(first_s, last_s)
+        third = np.abs(third) + away[:, None] * fourth
+        second = np.abs(second) + away[:, None] * third
+        v, a, j = (x[:, None] for x in (speed, acceleration, jerk))
+        return fourth * v**4 + 6 * third * v**2 * a + second * (4 * v * j + 3 * a**2)
+
+    def _steepest_third(self, low: Array, high: Array) -> Array:
+        """Of all pieces of the path between two arc lengths (k,)."""
+        knots = np.array(self.path.knots)
+        on_pieces = self.path.steepest_third((knots[1:] + knots[:-1]) / 2)
+        first = np.clip(np.searchsorted(knots, low, side="left") - 1, 0, knots.size - 2)
+        last = np.clip(np.searchsorted(knots, high, side="right") - 1, 0, knots.size - 2)
+        found = on_pieces[first]
+        for k in range(1, int((last - first).max()) + 1):
+            found = np.maximum(found, on_pieces[np.minimum(first + k, last)])
+        return found

@@ -1,0 +1,74 @@
+"""Between two times nothing leaves the bounds, and the bounds close in as the times do."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinematics import Heli4
+from kinematics.drive_train import DriveTrain
+from trajectory import AdeptCycle, Limits, Reversed, TimedPath, TimeLaw, motion_of, time_optimal
+from trajectory.enclosure import slack
+
+
+def smooth(path: AdeptCycle) -> TimedPath:
+    """Jerk-limited: s''' of +j, -j, -j, +j for a quarter of 0.2 s each."""
+    quarter = 0.05
+    j = path.length / (2 * quarter**3)
+    s = j * quarter**3 * np.array([0, 1 / 6, 1, 11 / 6, 2])
+    v = j * quarter**2 * np.array([0, 0.5, 1, 0.5, 0])
+    at = np.arange(5) * quarter
+    return TimedPath(
+        path, TimeLaw("smooth", at, s, v, j * quarter * np.array([0, 1, 0, -1]), j * np.array([1, -1, -1, 1]))
+    )
+
+
+def parts(timed: TimedPath, count: int) -> tuple[np.ndarray, np.ndarray]:
+    edges = timed.times[:-1, None] + np.diff(timed.times)[:, None] * np.linspace(0.0, 1.0, count + 1)
+    return edges[:, :-1].ravel(), edges[:, 1:].ravel()
+
+
+@pytest.fixture(scope="module", params=["smooth", "toppra", "sharp corners, way back"])
+def timed(request: pytest.FixtureRequest, robot: Heli4, path: AdeptCycle, limits: Limits) -> TimedPath:
+    if request.param == "smooth":
+        return smooth(path)
+    if request.param == "toppra":
+        return time_optimal(robot, path, limits, 1.0, 1000)
+    return time_optimal(robot, Reversed(AdeptCycle(blend=0.004, turn=-2.0, heading=0.4)), limits, 1.0, 1000)
+
+
+def test_every_instant_lies_within_the_slack_around_the_middle_of_its_part(robot: Heli4, timed: TimedPath) -> None:
+    low, high = parts(timed, 4 if timed.times.size > 100 else 500)
+    bounds = slack(robot, timed, 1.0, low, high)
+    middle = motion_of(robot, timed.at(0.5 * low + 0.5 * high), 1.0)
+    rng = np.random.default_rng(23)
+    for share in (1e-9, 1 - 1e-9, *rng.uniform(size=20)):
+        there = motion_of(robot, timed.at(low + share * (high - low)), 1.0)
+        assert (np.abs(there.torque - middle.torque) <= bounds.torque + 1e-9).all()
+        for group in ("tool", "joints"):
+            for value, centre, bound in zip(*(getattr(m, group) for m in (there, middle, bounds)), strict=True):
+                assert (np.abs(value - centre) <= bound * (1 + 1e-9) + 1e-9 * np.abs(centre).max()).all()
+
+
+def test_the_slack_shrinks_with_the_parts(robot: Heli4, timed: TimedPath) -> None:
+    coarse, fine = (slack(robot, timed, 1.0, *parts(timed, count)) for count in (20, 80))
+    for a, b in ((coarse.torque, fine.torque), (coarse.joints.third, fine.joints.third)):
+        assert np.median(b) < 0.3 * np.median(a)
+
+
+def test_the_slack_of_a_saturated_torque_is_a_small_share_of_it(robot: Heli4, path: AdeptCycle, limits: Limits) -> None:
+    timed = time_optimal(robot, path, limits, 1.0, 1000)
+    low, high = parts(timed, 10)
+    middle, bounds = motion_of(robot, timed.at(0.5 * low + 0.5 * high), 1.0), slack(robot, timed, 1.0, low, high)
+    assert (np.abs(middle.torque) + bounds.torque).max() < 1.0001 * np.abs(middle.torque).max()
+
+
+def test_friction_is_bounded_where_a_joint_turns_back(path: AdeptCycle) -> None:
+    rubbing = Heli4(inertia=Heli4.Inertia(drive_train=DriveTrain(coulomb=3.0, viscous=0.4)))
+    timed = smooth(path)
+    low, high = parts(timed, 500)
+    bounds, middle = (slack(rubbing, timed, 1.0, low, high), motion_of(rubbing, timed.at(0.5 * low + 0.5 * high), 1.0))
+    for share in (0.01, 0.3, 0.99):
+        there = motion_of(rubbing, timed.at(low + share * (high - low)), 1.0)
+        assert (np.abs(there.torque - middle.torque) <= bounds.torque + 1e-9).all()
+    assert (bounds.torque > 6.0).any()

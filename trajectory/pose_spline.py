@@ -1,0 +1,102 @@
+"""A motion of the pose itself: piecewise cubic in time, with no path and no law apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kinematics import InvalidShape, InvalidValue
+from trajectory.motion import PoseMotion
+from trajectory.path import Array
+
+_ROUNDING = 1e-9  # of the duration, or of the largest value
+
+
+@dataclass(frozen=True, eq=False)
+class PoseSpline:
+    """The pose with a piecewise constant third derivative.
+
+    Attributes:
+        name: of the method that found it.
+        times: (k + 1,) knots, the first at 0 [s].
+        pose, velocity, acceleration: (k, n) where each interval starts.
+        jerk: (k, n) of each interval.
+        ends: (2, n) the poses that were asked for at the start and at the end.
+
+    Raises:
+        InvalidShape, InvalidValue: arrays that do not fit together, are not finite or do not join at the knots.
+    """
+
+    name: str
+    times: Array
+    pose: Array
+    velocity: Array
+    acceleration: Array
+    jerk: Array
+    ends: Array
+
+    def __post_init__(self) -> None:
+        if self.times.ndim != 1 or self.times[0] != 0.0 or not (np.diff(self.times) > 0.0).all():
+            raise InvalidValue("PoseSpline times", "knots that do not increase from 0", "increasing from 0 s")
+        shape = (self.times.size - 1, np.shape(self.ends)[-1])
+        for field in ("pose", "velocity", "acceleration", "jerk"):
+            values = getattr(self, field)
+            if np.shape(values) != shape:
+                raise InvalidShape(f"PoseSpline {field}", [str(k) for k in range(shape[1])], np.shape(values))
+            if not np.isfinite(values).all():
+                raise InvalidValue(f"PoseSpline {field}", "a number that is not finite", "finite numbers")
+        _, motion = self.within(np.array([0.0, 1.0]))
+        for field, values in zip(("pose", "velocity", "acceleration"), motion, strict=False):
+            gap = np.abs(values[:-1, 1] - values[1:, 0])
+            if not (gap <= _ROUNDING * (1.0 + np.abs(values).max())).all():
+                k = int(gap.max(axis=-1).argmax()) + 1
+                raise InvalidValue(
+                    f"PoseSpline {field}", f"a gap of {gap.max():.3g} at knot {k}", "intervals that join"
+                )
+
+    @property
+    def progress(self) -> Array:
+        """(k + 1,) share of the duration at each knot."""
+        return self.times / self.times[-1]
+
+    @property
+    def duration(self) -> float:
+        """T [s]."""
+        return float(self.times[-1])
+
+    def at(self, t: Array) -> PoseMotion:
+        """As `TimedMotion.at`."""
+        t = np.asarray(t, dtype=float)
+        outside = ~((t >= -_ROUNDING * self.duration) & (t <= self.duration * (1 + _ROUNDING)))
+        if outside.any():
+            raise InvalidValue("time", float(t[outside].flat[0]), f"a number in [0, {self.duration:.9g}] s")
+        interval = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, self.times.size - 2)
+        return self._in_interval(interval, np.clip(t, 0.0, self.duration) - self.times[interval])
+
+    def within(self, fractions: Array) -> tuple[Array, PoseMotion]:
+        """As `TimedMotion.within`."""
+        since = np.diff(self.times)[:, None] * np.asarray(fractions, dtype=float)
+        interval = np.broadcast_to(np.arange(self.times.size - 1)[:, None], since.shape)
+        return self.times[:-1, None] + since, self._in_interval(interval, since)
+
+    def stretched(self, factor: float) -> PoseSpline:
+        """As `TimedMotion.stretched`."""
+        if not (np.isfinite(factor) and factor > 0.0):
+            raise InvalidValue("factor of a stretched motion", factor, "finite and > 0")
+        return replace(
+            self,
+            times=self.times * factor,
+            velocity=self.velocity / factor,
+            acceleration=self.acceleration / factor**2,
+            jerk=self.jerk / factor**3,
+        )
+
+    def steepest_jerk(self, low: Array, high: Array) -> Array:  # noqa: ARG002
+        """As `TimedMotion.steepest_jerk`: the jerk is constant in each interval."""
+        return np.zeros((low.size, self.ends.shape[-1]))
+
+    def _in_interval(self, interval: Array, since: Array) -> PoseMotion:
+        p, v, a, j = (x[interval] for x in (self.pose, self.velocity, self.acceleration, self.jerk))
+        t = since[..., None]
+        return PoseMotion(p + t * (v + t * (a / 2 + t * j / 6)), v + t * (a + t * j / 2), a + t * j, j)
