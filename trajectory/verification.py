@@ -40,8 +40,8 @@ _TOLERANCES = {  # SI, the closure in m^2; the two integrals are relative
 class Peak(NamedTuple):
     """The largest magnitude of one quantity, and where it is; SI units.
 
-    `joint` is None for the tool, `time` for a mean over the whole way; `limit` and `ratio` are None where nothing limits
-    the quantity. Where each joint has a limit of its own, it is the peak of their ratios.
+    `joint` is None for the tool, `time` for a mean over the way; `limit` and `ratio` are None where nothing limits the
+    quantity. Where each joint has a limit of its own, it is the peak of their ratios.
     """
 
     quantity: str
