@@ -89,22 +89,31 @@ def optimise(study: StudyArgument, json: JsonOption = False) -> None:
 
 @app.command()
 def trajectory(
-    study: StudyArgument, json: JsonOption = False, out: OutOption = None, prototype: PrototypeOption = False
+    study: StudyArgument,
+    json: JsonOption = False,
+    out: OutOption = None,
+    prototype: PrototypeOption = False,
+    law: Annotated[
+        str | None, typer.Option("--law", help="Timing law, in place of the study's: jerk or toppra.")
+    ] = None,
 ) -> None:
     """Time and verify the study's cycle on its committed optimum; with --out, write the set-points."""
     from kinematics.errors import InvalidValue
     from studies import console
     from studies.outputs import write_setpoints
     from studies.pipeline import time_cycle
+    from studies.schema import LAWS
 
     asked = _load(study)
+    if law is not None and law not in LAWS:
+        raise InvalidValue("--law", law, f"one of {', '.join(LAWS)}")
     if asked.trajectory is None:
         raise InvalidValue(f"study {asked.name}", "no [trajectory] table", "one with the cycle to time")
     robot = _robot(study, asked, prototype)
     _require_writable(out)
     with console.progress() as tell:
         tell("cycle")
-        timing = time_cycle(asked.trajectory, robot)
+        timing = time_cycle(asked.trajectory.model_copy(update={"law": law or asked.trajectory.law}), robot)
     console.print_timing(timing, write_setpoints(timing, out) if out else [], json)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -55,6 +54,7 @@ class Timing:
                 for name in there.verification.peak_over_limit
             },
             "worst_rms_over_peak_torque": float(there.verification.rms_over_peak.max()),
+            **({"limits_not_kept": list(self.cycle.not_kept)} if self.cycle.not_kept else {}),
         }
 
 
@@ -141,12 +141,11 @@ def margins_on_path(problem: Problem, robot: Mechanism, asked: schema.Trajectory
 def time_cycle(asked: schema.Trajectory, robot: Mechanism) -> Timing:
     """Time, verify and sample the study's cycle on a robot."""
     from trajectory.approach import plan_approach
-    from trajectory.toppra_law import time_optimal
 
     started = time.perf_counter()
     path, limits, payload = setup.cycle_of(asked.cycle), setup.limits_of(asked.limits), asked.cycle.payload
-
-    cycle = there_and_back(robot, path, limits, payload, partial(time_optimal, intervals=asked.grid))
+    timing, cannot_keep = setup.timing_of(asked)
+    cycle = there_and_back(robot, path, limits, payload, timing, asked.cycle.payload_back, cannot_keep)
     seconds = time.perf_counter() - started
     points = cycle_setpoints(cycle, asked.period, robot.actuator_units)
     approach = None

@@ -1,6 +1,6 @@
 """Paths, actuator limits, timing laws, verification and set-points.
 
-`time_optimal` and `plan_approach` load their solvers, toppra and ruckig, at first use.
+`time_optimal`, `jerk_limited` and `plan_approach` load their solvers, toppra, IPOPT and ruckig, at first use.
 """
 
 from __future__ import annotations
@@ -24,10 +24,12 @@ from trajectory.verification import Peak, Verification, verify
 
 if TYPE_CHECKING:
     from trajectory.approach import Approach, plan_approach
+    from trajectory.jerk_law import jerk_limited
     from trajectory.toppra_law import time_optimal
 
 _LAZY = {
     "Approach": "trajectory.approach",
+    "jerk_limited": "trajectory.jerk_law",
     "plan_approach": "trajectory.approach",
     "time_optimal": "trajectory.toppra_law",
 }
@@ -63,6 +65,7 @@ __all__ = [
     "TimingFailed",
     "Verification",
     "cycle_setpoints",
+    "jerk_limited",
     "motion_of",
     "plan_approach",
     "pose_motion",

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 from kinematics import InvalidValue, Mechanism
 from trajectory.errors import LimitsExceeded
@@ -47,11 +48,18 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class Cycle:
-    """The pieces in order, the limits and the robot for which they are timed."""
+    """The pieces in order, the limits and the robot for which they are timed.
+
+    Attributes:
+        robot, pieces: as named.
+        limits: that are kept.
+        not_kept: fields of the limits that were asked for too, but that the timing law cannot keep.
+    """
 
     robot: Mechanism
     limits: Limits
     pieces: tuple[Piece, ...]
+    not_kept: tuple[str, ...] = ()
 
     @property
     def duration(self) -> float:
@@ -68,7 +76,7 @@ class Cycle:
             InvalidValue: the period is not finite and positive.
             LimitsExceeded: a stretched piece fails its verification.
         """
-        return Cycle(self.robot, self.limits, tuple(self._whole(piece, period) for piece in self.pieces))
+        return replace(self, pieces=tuple(self._whole(piece, period) for piece in self.pieces))
 
     def _whole(self, piece: Piece, period: float) -> Piece:
         factor = periods_of(piece.duration, period) * period / piece.duration
@@ -84,8 +92,11 @@ def there_and_back(
     payload: float,
     timing: Timing,
     payload_back: float | None = None,
+    cannot_keep: tuple[str, ...] = (),
 ) -> Cycle:
     """Time a path and its reverse; each is verified, and repaired by at most 1 %.
+
+    Each way keeps the RMS torque limit by itself, so that the cycle does with any payloads.
 
     Args:
         robot: any mechanism whose pose is [x, y, z, theta].
@@ -94,16 +105,20 @@ def there_and_back(
         payload: mass at the tool on the way there [kg].
         timing: the method, such as `time_optimal`.
         payload_back: mass on the way back [kg]; as on the way there when None.
+        cannot_keep: fields of the limits that `timing` refuses: left out, and named by the cycle where they are set.
 
     Raises:
         LimitsExceeded: a law breaks its limits by more than may be repaired; and what `timing` raises.
     """
     loads = (payload, payload if payload_back is None else payload_back)
+    left_out = tuple(name for name in cannot_keep if getattr(limits, name) is not None)
+    none: dict[str, Any] = dict.fromkeys(left_out)
+    limits = replace(limits, **none)
     pieces = []
     for way, load in zip((path, Reversed(path)), loads, strict=True):
         timed = repair(robot, timing(robot, way, limits, load), limits, load)
         pieces.append(Piece(way, load, timed))
-    return Cycle(robot, limits, tuple(pieces))
+    return Cycle(robot, limits, tuple(pieces), left_out)
 
 
 def periods_of(duration: float, period: float) -> int:

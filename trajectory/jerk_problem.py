@@ -29,6 +29,7 @@ from trajectory.path import Array
 _OPTIONS: dict[str, Any] = {
     "print_time": False,
     "error_on_fail": False,
+    "show_eval_warnings": False,  # a singular pose has no finite numbers; the status says so
     "ipopt": {
         "print_level": 0,
         "sb": "yes",

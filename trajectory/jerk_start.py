@@ -13,6 +13,7 @@ from trajectory.path import Array, Path
 from trajectory.timing import PathMotion, TimeLaw
 from trajectory.usage import uses
 
+_WHERE_EXCEEDED = 0.1  # share of the knots; more of them leave too few for the switches elsewhere
 _POWERS = {"joint speed": 1.0, "tool speed": 1.0, "joint jerk": 3.0}  # of the speed; about 2 for the others
 
 
@@ -63,7 +64,7 @@ def _stretch(robot: Mechanism, tool: PoseMotion, limits: Limits, payload: float)
 
 
 def denser_start(law: TimeLaw, over: Array, intervals: int) -> Start:
-    """A law's own motion at new knots: half of them at equal times, half where limits were exceeded between knots.
+    """A law's own motion at new knots: most at equal times, the others where limits were exceeded between knots.
 
     What an interval h exceeds grows with h^2: knots in proportion to its root make it even.
 
@@ -75,7 +76,7 @@ def denser_start(law: TimeLaw, over: Array, intervals: int) -> Start:
     share = np.diff(law.times) / law.duration
     root = np.sqrt(over)
     if root.any():
-        share = (share + root / root.sum()) / 2
+        share = (1.0 - _WHERE_EXCEEDED) * share + _WHERE_EXCEEDED * root / root.sum()
     filled = np.concatenate([[0.0], np.cumsum(share)])
     times = np.interp(np.linspace(0.0, filled[-1], intervals + 1), filled, law.times)
     along = law.at(times)
