@@ -24,9 +24,9 @@ from trajectory.verification import integrals
 
 INTERVALS = 160
 LEAST_INTERVALS = 20
-ROUNDS = 3  # of solving and tightening
+ROUNDS = 4  # of solving and tightening
 _CLOSE = 1.0005  # peak over limit that is left to the repair
-_SAMPLES = np.linspace(0.0, 1.0, 9)  # of each interval, where limits are looked at between the knots
+_SAMPLES = np.linspace(0.0, 1.0, 17)  # of each interval, where limits are looked at between the knots
 _SHORTEST = 1e-3  # interval, of the mean one
 _RMS = "rms torque"
 _CHECKED = 2000  # intervals of arc length on which the path must be smooth and within reach

@@ -1,4 +1,4 @@
-"""Can Heli4 do three cycles a second without overheating its drives? `python -m tests.bench.cycle_rate` writes the answer.
+"""Can Heli4 do three cycles a second and keep its drives cool? `python -m tests.bench.cycle_rate` writes the answer.
 
 The standard cycle with a half turn and 1 kg, on the prototype and on the committed optimum of the study heli4: tool
 acceleration at most 165 m/s^2, RMS torque at most 60 % of the peak; then with either limit left out.
@@ -63,9 +63,9 @@ HEADER = f"""\
 
 `python -m tests.bench.cycle_rate` wrote this. The standard cycle (25 / 305 / 25 mm, corners of 24.9 mm, a half turn out
 and back) with 1 kg, timed by the jerk-limited law and verified; asked for: {WANTED:g} cycles a second, at most
-{ASKED.tool_acceleration:g} m/s^2 at the tool and an RMS torque of at most 60 % of the peak. The drives ({ASKED.speed:g} rad/s,
-{PEAK:g} N m, {ASKED.jerk:g} rad/s^3) are an assumption of this project. "On the bus" each way takes whole milliseconds.
-A limit is active where a motion comes within 0.1 % of it.
+{ASKED.tool_acceleration:g} m/s^2 at the tool and an RMS torque of at most 60 % of the peak. The drives
+({ASKED.speed:g} rad/s, {PEAK:g} N m, {ASKED.jerk:g} rad/s^3) are an assumption of this project. "On the bus" each way
+takes whole milliseconds. A limit is active where a motion comes within 0.1 % of it.
 
 | Heli4 | limits | half cycle [ms] | cycles/s | on the bus | {WANTED:g} a second | RMS / peak | active |
 | --- | --- | --- | --- | --- | --- | --- | --- |"""
