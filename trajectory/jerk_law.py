@@ -127,10 +127,10 @@ class _Knots:
         return found
 
 
-def _variable_bounds(numbers: Numbers, excess: Excess) -> tuple[Array, Array]:
+def _variable_bounds(numbers: Numbers, tight: Excess) -> tuple[Array, Array]:
     """Of all variables; at rest, with zero s'', at both ends."""
     n = numbers.parameters["ds"].size
-    top = np.min([speed / _at_knots(excess, name, n) for name, speed in numbers.top_speeds.items()], axis=0)
+    top = np.min([speed / _at_knots(tight, name, n) for name, speed in numbers.top_speeds.items()], axis=0)
     low = Variables(np.zeros(n + 1), np.full(n + 1, -np.inf), np.full(n, -np.inf), np.full(n, _SHORTEST / n))
     high = Variables(top, np.full(n + 1, np.inf), np.full(n, np.inf), np.full(n, np.inf))
     for bound in (low, high):
@@ -138,27 +138,26 @@ def _variable_bounds(numbers: Numbers, excess: Excess) -> tuple[Array, Array]:
     return np.concatenate(low), np.concatenate(high)
 
 
-def _row_bounds(rows: tuple[Row, ...], numbers: Numbers, excess: Excess) -> tuple[Array, Array]:
+def _row_bounds(rows: tuple[Row, ...], numbers: Numbers, tight: Excess) -> tuple[Array, Array]:
     """Of the 3 n equations and the rows."""
     n = numbers.parameters["ds"].size
     low, high = [np.zeros(3 * n)], [np.zeros(3 * n)]
     for row in rows:
         bound = numbers.bounds[row.quantity][row.joint]
         if row.place == "whole":
-            tight = np.array([bound])
+            most = np.array([bound])
         else:
-            excess_there = (
-                _at_knots(excess, row.quantity, n) if row.place == "knots" else excess.get(row.quantity, np.ones(n))
-            )
-            tight = bound / excess_there ** (2 if row.quantity == "tool acceleration" else 1)
-        high.append(tight)
-        low.append(np.full(tight.size, -np.inf) if row.quantity in _ONE_SIDED else -tight)
+            inside = tight.get(row.quantity, np.ones(n))
+            there = _at_knots(tight, row.quantity, n) if row.place == "knots" else inside
+            most = bound / there ** (2 if row.quantity == "tool acceleration" else 1)
+        high.append(most)
+        low.append(np.full(most.size, -np.inf) if row.quantity in _ONE_SIDED else -most)
     return np.concatenate(low), np.concatenate(high)
 
 
-def _at_knots(excess: Excess, quantity: str, intervals: int) -> Array:
-    """(n + 1,) the larger excess of a knot's two intervals."""
-    if quantity not in excess:
+def _at_knots(tight: Excess, quantity: str, intervals: int) -> Array:
+    """(n + 1,) the larger number of a knot's two intervals."""
+    if quantity not in tight:
         return np.ones(intervals + 1)
-    own = excess[quantity]
+    own = tight[quantity]
     return np.maximum(np.append(own, 1.0), np.append(1.0, own))
