@@ -9,7 +9,7 @@ import pytest
 
 from kinematics import Heli4, Mechanism, Peppermill, Redundant3T1R
 from kinematics.dynamics import inverse_dynamics
-from trajectory import AdeptCycle, Limits, LimitsExceeded, TimedPath, repair, verify
+from trajectory import AdeptCycle, Limits, LimitsExceeded, TimedPath, repair, torque_terms, verify
 from trajectory.torque_terms import torque_along, torque_by_rate
 
 FREE = Limits(speed=1e6)
@@ -42,6 +42,23 @@ def test_parts_along_a_path_give_the_torque_at_any_speed_and_acceleration(robot:
     exact = inverse_dynamics(robot, 1.0, pose, first * v, second * v**2 + first * a)
     found = parts.inertia * a + parts.centrifugal * v**2 + parts.viscous * v + parts.constant
     assert np.abs(found - exact).max() < 1e-9 * np.abs(exact).max()
+
+
+def test_friction_goes_to_the_constant_and_the_linear_part(robot: Heli4, monkeypatch: pytest.MonkeyPatch) -> None:
+    pose, velocity, acceleration = some_motion(robot)
+    bare = torque_by_rate(robot, 1.0, pose, velocity, acceleration)
+    speed = np.einsum("kij,kj->ki", robot.actuator_jacobian(pose), velocity)
+
+    def rubbing(robot: Mechanism, payload: float, pose: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+        rate = np.einsum("kij,kj->ki", robot.actuator_jacobian(pose), v)
+        return inverse_dynamics(robot, payload, pose, v, a) + 3.0 * np.sign(rate) + 0.7 * rate
+
+    monkeypatch.setattr(torque_terms, "inverse_dynamics", rubbing)
+    found = torque_by_rate(robot, 1.0, pose, velocity, acceleration)
+    size = np.abs(bare.quadratic).max()
+    assert np.abs(found.constant - bare.constant - 3.0 * np.sign(speed)).max() < 1e-10 * size
+    assert np.abs(found.linear - 0.7 * speed).max() < 1e-10 * size
+    assert np.abs(found.quadratic - bare.quadratic).max() < 1e-10 * size
 
 
 def test_the_rms_torque_is_repaired_by_the_least_stretch(robot: Heli4, timed: TimedPath) -> None:
