@@ -203,6 +203,9 @@ def trajectory(
     json: JsonOption = False,
     out: OutOption = None,
     prototype: PrototypeOption = False,
+    law: Annotated[
+        str | None, typer.Option("--law", help="Timing law, in place of the study's: jerk or toppra.")
+    ] = None,
     formats: FormatOption = None,
 ) -> None:
     """Time and verify the study's cycle on its committed optimum; with --out, write the set-points."""
@@ -210,6 +213,10 @@ def trajectory(
     from studies import console
     from studies.outputs import write_setpoints
     from studies.pipeline import time_cycle
+    from studies.schema import LAWS
+
+    if law is not None and law not in LAWS:
+        raise InvalidValue("--law", law, f"one of {', '.join(LAWS)}")
     from trajectory.drive_files import format_named
 
     if formats and out is None:
@@ -223,7 +230,7 @@ def trajectory(
     _require_writable(out)
     with console.progress() as tell:
         tell("cycle")
-        timing = time_cycle(asked.trajectory, robot)
+        timing = time_cycle(asked.trajectory.model_copy(update={"law": law or asked.trajectory.law}), robot)
     console.print_timing(timing, write_setpoints(timing, asked.trajectory, out) if out else [], json)
 
 

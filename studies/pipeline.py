@@ -6,7 +6,6 @@ import math
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -58,6 +57,7 @@ class Timing:
                 for name in there[0].verification.peak_over_limit
             },
             "worst_rms_over_peak_torque": max(float(timed.verification.rms_over_peak.max()) for timed in there),
+            **({"limits_not_kept": list(self.cycle.not_kept)} if self.cycle.not_kept else {}),
         }
 
 
@@ -155,12 +155,12 @@ def margins_on_path(problem: Problem, robot: Mechanism, asked: schema.Trajectory
 def time_cycle(asked: schema.Trajectory, robot: Mechanism) -> Timing:
     """Time, verify and sample the study's cycle on a robot."""
     from trajectory.moves import plan_move
-    from trajectory.toppra_law import time_optimal
 
     started = time.perf_counter()
     path, limits, payload = setup.path_of(asked, robot.pose_names), setup.limits_of(asked.limits), asked.payload
 
-    cycle = there_and_back(robot, path, limits, payload, partial(time_optimal, intervals=asked.grid))
+    timing, cannot_keep = setup.timing_of(asked)
+    cycle = there_and_back(robot, path, limits, payload, timing, asked.payload_back, cannot_keep)
     seconds = time.perf_counter() - started
     points = cycle_setpoints(cycle, asked.period, robot.actuator_units)
     approach = None

@@ -163,6 +163,8 @@ class Cycle(_Model):
     start_angle: Annotated[float, Key("an angle", ANGLE)] = 0.0
     tilt: Annotated[tuple[float, float], Key("two angles, roll and pitch at the place", ANGLE)] = (0.0, 0.0)
     payload: Annotated[float, Field(ge=0), Key("a mass >= 0 (kg)")]
+    payload_back: Annotated[float | None, Field(ge=0), Key("a mass >= 0 (kg)")] = None
+    """On the way back; None for the same."""
 
     @field_validator("size")
     @classmethod
@@ -246,12 +248,32 @@ class Limits(_Model):
     jerk: Annotated[PerJoint | None, Key("a number > 0, or one a joint (rad/s^3, or m/s^3)")] = None
     tool_speed: Annotated[Positive | None, Key("a speed > 0 (m/s)")] = None
     tool_acceleration: Annotated[Positive | None, Key("an acceleration > 0 (m/s^2)")] = None
+    position: Annotated[
+        Interval | Annotated[tuple[Interval, ...], Field(min_length=1)] | None,
+        Key("low < high, or one such pair a joint (rad, or m)"),
+    ] = None
+    stall_torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
+    no_load_speed: Annotated[
+        PerJoint | None,
+        Field(validate_default=True),
+        Key("a speed > 0, or one a joint, if and only if there is a stall_torque", Dimension.JOINT_SPEED),
+    ] = None
+    """Both or neither: the ends of the speed-torque line."""
+    rms_torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
+    """Of each way by itself, and so of the cycle."""
+
+    @field_validator("no_load_speed")
+    @classmethod
+    def _whole_line(cls, speed: PerJoint | None, info: ValidationInfo) -> PerJoint | None:
+        if "stall_torque" in info.data and (info.data["stall_torque"] is None) != (speed is None):
+            raise ValueError("half of a line")
+        return speed
 
 
-LAWS = ("toppra",)
 File = Literal["csv", "ros2", "cia402", "zaber", "xps", "pmac"]
 FILES = get_args(File)
 Increments = Annotated[int, Field(gt=0)]
+LAWS = ("jerk", "toppra")
 
 
 class Approach(_Model):
@@ -279,7 +301,8 @@ class Drive(_Model):
 class Trajectory(_Model):
     """How the cycle is timed, and how its set-points are sampled."""
 
-    law: Annotated[Literal["toppra"], Key("one of", choices=LAWS)]
+    law: Annotated[Literal["jerk", "toppra"], Key("one of", choices=LAWS)] = "jerk"
+    """toppra keeps no jerk limit."""
     grid: Annotated[int, Field(ge=1000, le=1_000_000), Key("a whole number from 1000 to 1000000")] = 2000
     """Points along the path."""
     period: Annotated[Positive, Key("a time > 0 (s)")] = 0.001
@@ -307,6 +330,11 @@ class Trajectory(_Model):
         asked = self.cycle or self.path
         assert asked is not None
         return asked.payload
+
+    @property
+    def payload_back(self) -> float | None:
+        """Mass on the way back [kg]; None for the same."""
+        return self.cycle.payload_back if self.cycle else None
 
 
 class Study(_Model):

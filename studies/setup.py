@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -17,6 +18,7 @@ from studies.mechanisms import mechanism_class
 from studies.schema import CylinderRegion, Study
 from studies.toml_file import read_toml
 from trajectory import Limits, Path, RoundedPath, Setpoints
+from trajectory.cycle import Timing
 from trajectory.drive_files import Drive, drive_files
 
 OBJECTIVE = "fvi"
@@ -136,6 +138,20 @@ def _along(robot: Mechanism, path: Path, period: float) -> Setpoints:
 def limits_of(limits: schema.Limits) -> Limits:
     """The limits of the cycle."""
     return Limits(**limits.model_dump())
+
+
+def timing_of(asked: schema.Trajectory) -> tuple[Timing, tuple[str, ...]]:
+    """The study's timing law, and the limits that it is run without although the study may set them.
+
+    Only jerk: it makes a motion smooth, while what else a law cannot keep rates the drives, and is refused.
+    """
+    if asked.law == "toppra":
+        from trajectory.toppra_law import time_optimal
+
+        return partial(time_optimal, intervals=asked.grid), ("jerk",)
+    from trajectory.jerk_law import jerk_limited
+
+    return jerk_limited, ()
 
 
 def approach_limits(asked: schema.Approach, drives: Limits, joints: int) -> Limits:

@@ -1,6 +1,6 @@
 """Paths, actuator limits, timing laws, verification and set-points.
 
-`time_optimal`, `plan_move` and `plan_stop` load their solvers, toppra and ruckig, at first use.
+The timing laws and the moves load their solvers, toppra, IPOPT and ruckig, at first use.
 """
 
 from __future__ import annotations
@@ -38,12 +38,14 @@ from trajectory.waypoint_file import read_waypoints
 
 if TYPE_CHECKING:
     from trajectory.free_law import free_motion
+    from trajectory.jerk_law import jerk_limited
     from trajectory.moves import Move, plan_move, plan_stop
     from trajectory.toppra_law import time_optimal
 
 _LAZY = {
     "Move": "trajectory.moves",
     "free_motion": "trajectory.free_law",
+    "jerk_limited": "trajectory.jerk_law",
     "plan_move": "trajectory.moves",
     "plan_stop": "trajectory.moves",
     "time_optimal": "trajectory.toppra_law",
@@ -92,6 +94,7 @@ __all__ = [
     "cycle_setpoints",
     "emergency_stop",
     "free_motion",
+    "jerk_limited",
     "lower_bound",
     "motion_of",
     "plan_move",

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -55,6 +56,8 @@ class Cycle:
 
     Attributes:
         certificate: that every pose of the path is within reach and away from the singularities.
+        limits: that are kept.
+        not_kept: fields of the limits that were asked for too, but that the timing law cannot keep.
         there, back: the pieces of each way; none back where the path ends in the pose where it starts.
     """
 
@@ -64,6 +67,7 @@ class Cycle:
     certificate: PathCertificate
     there: tuple[Piece, ...]
     back: tuple[Piece, ...]
+    not_kept: tuple[str, ...] = ()
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
@@ -107,10 +111,12 @@ def there_and_back(
     payload: float,
     timing: Timing,
     payload_back: float | None = None,
+    cannot_keep: tuple[str, ...] = (),
 ) -> Cycle:
     """Prove a path, and time it and its reverse; each piece is verified, and repaired by at most 1 %.
 
     A path with corners that are not rounded is timed piece by piece, and one that ends where it starts is not reversed.
+    Each piece keeps the RMS torque limit by itself, so that the cycle does with any payloads.
 
     Args:
         robot: any mechanism with the path's kind of pose.
@@ -119,12 +125,16 @@ def there_and_back(
         payload: mass at the tool on the way there [kg].
         timing: the method, such as `time_optimal`.
         payload_back: mass on the way back [kg]; as on the way there when None.
+        cannot_keep: fields of the limits that `timing` refuses: left out, and named by the cycle where they are set.
 
     Raises:
         PathRefused: a pose of the path is out of reach or singular, or could not be proved not to be.
         LimitsExceeded: a law breaks its limits by more than may be repaired; and what `timing` raises.
     """
     certificate = certify_path(robot, path)
+    left_out = tuple(name for name in cannot_keep if getattr(limits, name) is not None)
+    none: dict[str, Any] = dict.fromkeys(left_out)
+    limits = replace(limits, **none)
 
     def timed(way: Path, load: float) -> tuple[Piece, ...]:
         parts = way.split()
@@ -134,7 +144,7 @@ def there_and_back(
 
     there = timed(path, payload)
     back = () if is_closed(path) else timed(Reversed(path), payload if payload_back is None else payload_back)
-    return Cycle(robot, limits, path, certificate, there, back)
+    return Cycle(robot, limits, path, certificate, there, back, left_out)
 
 
 def is_closed(path: Path) -> bool:

@@ -4,30 +4,36 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
+from typing import Any
 
 import numpy as np
 
 from kinematics import InvalidValue
 
 PerJoint = float | tuple[float, ...]
-_JOINT_FIELDS = ("speed", "acceleration", "torque", "jerk")
+Range = tuple[float, float]
+_TOOL_FIELDS = ("tool_speed", "tool_acceleration")
 
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits, each the same in both directions; None is no limit. A joint limit is one number or one a joint;
-    where drives couple the joints, as the Peppermill's do, it holds at the actuators.
+    """Limits, each but the position the same in both directions; None is no limit. A joint limit is one number (one
+    range) or one a joint; where drives couple the joints, as the Peppermill's do, it holds at the actuators.
 
     Attributes:
         speed: of the joints [rad/s or m/s].
         acceleration: of the joints [rad/s^2 or m/s^2].
-        torque: of the drives [N m or N].
+        torque: peak of the drives [N m or N].
         jerk: of the joints [rad/s^3 or m/s^3].
         tool_speed: of the tool point [m/s].
         tool_acceleration: of the tool point [m/s^2].
+        position: lowest and highest of the joints [rad or m].
+        stall_torque, no_load_speed: ends of the drives' speed-torque line, which a motion stays below:
+            |tau| <= stall_torque (1 - |q'| / no_load_speed) [N m or N, rad/s or m/s]; both or neither.
+        rms_torque: root mean square over each way from rest to rest, so over the whole cycle too [N m or N].
 
     Raises:
-        InvalidValue: a limit that is not finite and positive.
+        InvalidValue: a limit that is not finite and positive, a range that does not rise, or half of a line.
     """
 
     speed: PerJoint
@@ -36,17 +42,26 @@ class Limits:
     jerk: PerJoint | None = None
     tool_speed: float | None = None
     tool_acceleration: float | None = None
+    position: Range | tuple[Range, ...] | None = None
+    stall_torque: PerJoint | None = None
+    no_load_speed: PerJoint | None = None
+    rms_torque: PerJoint | None = None
 
     def __post_init__(self) -> None:
+        if self.position is not None:
+            object.__setattr__(self, "position", _ranges(self.position))
+        if (self.stall_torque is None) != (self.no_load_speed is None):
+            lacking = "stall_torque" if self.stall_torque is None else "no_load_speed"
+            raise InvalidValue(f"Limits {lacking}", None, "both ends of the speed-torque line, or neither")
         for field in fields(self):
             value = getattr(self, field.name)
-            if value is None and field.name != "speed":
+            if field.name == "position" or (value is None and field.name != "speed"):
                 continue
             numbers = _numbers(value)
             if numbers is None or not numbers or not all(np.isfinite(v) and v > 0 for v in numbers):
                 raise InvalidValue(f"Limits {field.name}", value, "finite and > 0")
             several = not isinstance(value, int | float)
-            if several and field.name not in _JOINT_FIELDS:
+            if several and field.name in _TOOL_FIELDS:
                 raise InvalidValue(f"Limits {field.name}", value, "one number")
             object.__setattr__(self, field.name, numbers if several else numbers[0])
 
@@ -54,7 +69,7 @@ class Limits:
         """(count,) a joint limit, None where there is none.
 
         Args:
-            name: speed, acceleration, torque or jerk.
+            name: any field but those of the tool and the position.
             count: number of joints of the robot.
 
         Raises:
@@ -67,9 +82,41 @@ class Limits:
             raise InvalidValue(f"Limits {name}", value, f"one number or {count}, one a joint")
         return np.broadcast_to(np.asarray(value, dtype=float), (count,)).copy()
 
+    def ranges(self, count: int) -> tuple[np.ndarray, np.ndarray] | None:
+        """(count,) lowest and (count,) highest positions, None where there is no limit; errors as `of_joints`."""
+        if self.position is None:
+            return None
+        pairs = np.atleast_2d(np.array(self.position, dtype=float))
+        if len(pairs) not in (1, count):
+            raise InvalidValue("Limits position", self.position, f"one range or {count}, one a joint")
+        low, high = np.broadcast_to(pairs, (count, 2)).T
+        return low, high
+
     def as_dict(self) -> dict[str, object]:
         """The limits that are set; a list for one a joint."""
-        return {k: list(v) if isinstance(v, tuple) else v for k, v in asdict(self).items() if v is not None}
+        return {k: _lists(v) for k, v in asdict(self).items() if v is not None}
+
+
+def _lists(value: Any) -> Any:
+    return [_lists(v) for v in value] if isinstance(value, tuple) else value
+
+
+def _ranges(value: Any) -> Range | tuple[Range, ...]:
+    """(low, high), or one such pair a joint.
+
+    Raises:
+        InvalidValue: anything else.
+    """
+    try:
+        pairs = np.array(value, dtype=float)
+        if pairs.ndim not in (1, 2) or pairs.shape[-1] != 2 or not pairs.size:
+            raise ValueError
+    except (ValueError, TypeError):
+        raise InvalidValue("Limits position", value, "low < high, or one such pair a joint") from None
+    if not (np.isfinite(pairs).all() and (pairs[..., 0] < pairs[..., 1]).all()):
+        raise InvalidValue("Limits position", value, "finite, low < high")
+    found: Any = tuple(tuple(row) for row in pairs.tolist()) if pairs.ndim == 2 else tuple(pairs.tolist())
+    return found
 
 
 def _numbers(value: object) -> tuple[float, ...] | None:

@@ -1,23 +1,25 @@
 """Repair of a motion that breaks its limits by a little: the least stretch of time that brings every peak within.
 
-Stretching time by f divides speeds by f, accelerations by f^2 and jerks by f^3. Torque keeps the part c of weight and
-Coulomb friction, so with h = 1 / f and viscous friction v it is c + h v + h^2 (tau - v - c): each sample that is too
-high gives its largest h, and the least of them is the factor. The stretched motion is then verified from scratch.
+Stretching time by f divides speeds by f, accelerations by f^2 and jerks by f^3. Torque keeps what it needs at rest:
+with r = 1 / f it is quadratic in r, and its mean square a quartic, so that each sample that is too high gives its
+largest r. No stretch changes a position. The stretched motion is then verified from scratch.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from kinematics import Mechanism
-from kinematics.dynamics import inverse_dynamics
 from trajectory.errors import LimitsExceeded
 from trajectory.limits import Limits
 from trajectory.motion import motion_of
+from trajectory.path import Array
 from trajectory.timed import TimedMotion
-from trajectory.verification import Verification, sampling, verify
+from trajectory.torque_terms import ByRate, torque_by_rate
+from trajectory.verification import Verification, integrals, sampling, verify
 
 REPAIRABLE = 1.01  # the largest peak over limit that is repaired
 _POWERS = {
@@ -27,6 +29,7 @@ _POWERS = {
     "tool speed": 1.0,
     "tool acceleration": 2.0,
 }
+_OF_TORQUE = ("torque", "torque at speed", "rms torque")
 _ROUNDING = 1e-12
 
 
@@ -60,11 +63,12 @@ def repair(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float)
     if before.ok:
         return Repaired(timed, 1.0, before, before)
     peaks = before.peak_over_limit
-    beyond = {name: value for name, value in before.failures.items() if name not in peaks or not value <= REPAIRABLE}
+    mendable = {*_POWERS, *_OF_TORQUE} & peaks.keys()
+    beyond = {name: value for name, value in before.failures.items() if name not in mendable or not value <= REPAIRABLE}
     if beyond:
         raise LimitsExceeded(beyond, REPAIRABLE)
     factors = [peaks[name] ** (1 / power) for name, power in _POWERS.items() if name in peaks]
-    factor = max(1.0, *factors, _torque_factor(robot, timed, limits, payload)) * (1.0 + _ROUNDING)
+    factor = max(*factors, 1.0 / _slowest(robot, timed, limits, payload)) * (1.0 + _ROUNDING)
     stretched = timed.stretched(factor)
     after = verify(robot, stretched, limits, payload)
     if not after.ok:
@@ -72,26 +76,52 @@ def repair(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float)
     return Repaired(stretched, factor, before, after)
 
 
-def _torque_factor(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float) -> float:
-    """The least stretch that keeps the torque limits.
+def _slowest(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float) -> float:
+    """The largest share r = 1 / f of the speed that keeps the torque, the speed-torque line and the RMS torque.
 
     Raises:
-        LimitsExceeded: weight and Coulomb friction alone are beyond a limit.
+        LimitsExceeded: what the torque keeps at rest is beyond a limit already.
     """
-    limit = limits.of_joints("torque", len(robot.joint_names))
-    if limit is None:
+    times, tool = timed.within(sampling(timed))
+    torque = torque_by_rate(robot, payload, tool.pose, tool.velocity, tool.acceleration)
+    count = len(robot.actuator_names)
+    peak, stall, fastest, rms = (
+        limits.of_joints(name, count) for name in ("torque", "stall_torque", "no_load_speed", "rms_torque")
+    )
+    shares = [1.0]
+    if peak is not None:
+        shares.append(_share("torque", torque, peak, np.zeros_like(torque.linear)))
+    if stall is not None and fastest is not None:
+        slope = stall / fastest * np.abs(motion_of(robot, tool, payload).joints.first)
+        shares.append(_share("torque at speed", torque, stall, slope))
+    if rms is not None:
+        shares += [_rms_share(times, ByRate(*(c[..., k] for c in torque)), float(rms[k])) for k in range(count)]
+    return min(shares)
+
+
+def _share(quantity: str, torque: ByRate, limit: Array, slope: Array) -> float:
+    """The largest r with |constant + linear r + quadratic r^2| + slope r <= limit at each sample that exceeds it."""
+    sign = np.sign(sum(torque))
+    rest = limit - sign * torque.constant
+    if not rest.min() > 0.0:
+        raise LimitsExceeded({f"{quantity} at rest": float((1.0 - rest / limit).max())}, 1.0)
+    linear, quadratic = sign * torque.linear + slope, sign * torque.quadratic
+    over = linear + quadratic > rest
+    c, b, a = rest[over], linear[over], quadratic[over]
+    # The first root, free of cancellation; it is real, as the limit is kept at r = 0 and broken at r = 1.
+    return float(np.min(2 * c / (b + np.sqrt(b**2 + 4 * a * c)), initial=1.0))
+
+
+def _rms_share(times: Array, torque: ByRate, limit: float) -> float:
+    """The largest r in [0, 1] up to which one joint's mean square torque, a quartic in r, keeps its limit."""
+    c, b, a = (x[..., None] for x in torque)
+    terms = np.concatenate([a * a, 2 * a * b, b * b + 2 * a * c, 2 * b * c, c * c], axis=-1)
+    quartic = integrals(times, terms).sum(axis=0) / times[-1, -1]
+    quartic[-1] -= limit**2
+    if not quartic[-1] < 0.0:
+        raise LimitsExceeded({"rms torque at rest": math.sqrt(quartic[-1] + limit**2) / limit}, 1.0)
+    if quartic.sum() <= 0.0:
         return 1.0
-    motion = motion_of(robot, timed.within(sampling(timed))[1], payload)
-    rest = np.zeros_like(motion.tool.pose)
-    coulomb, viscous = robot.inertia.drive_train.friction(motion.joints.first)
-    constant = inverse_dynamics(robot, payload, motion.tool.pose, rest, rest) + coulomb
-    static = float((np.abs(constant) / limit).max())
-    if not static < 1.0:
-        raise LimitsExceeded({"torque at rest": static}, 1.0)
-    over = np.abs(motion.torque) > limit
-    if not over.any():
-        return 1.0
-    side = np.sign(motion.torque)[over]
-    square, linear = side * (motion.torque - viscous - constant)[over], side * viscous[over]
-    left = np.broadcast_to(limit, motion.torque.shape)[over] - side * constant[over]
-    return float(((linear + np.sqrt(linear**2 + 4 * square * left)) / (2 * left)).max())
+    roots = np.roots(quartic)
+    real = roots.real[np.abs(roots.imag) < _ROUNDING]
+    return float(real[(real > 0.0) & (real <= 1.0)].max())

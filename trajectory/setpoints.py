@@ -207,6 +207,7 @@ def _header(before: Cycle, after: Cycle, period: float, counts: Sequence[int]) -
         "cycle time before stretching [s]": before.duration,
         "cycle time after stretching [s]": after.duration,
         "payloads [kg]": [float(piece.payload) for piece in before.pieces],
+        "limits not kept by this law": list(before.not_kept),
     }
     header |= {f"path {name}": value for name, value in before.path.as_dict().items()}
     header["proved margins"] = before.certificate.margins

@@ -11,7 +11,7 @@ Along a path, with u = s'' and x = s'^2, every limit that is kept here is linear
 with a dash for the derivative by the path parameter and f the Coulomb friction, whose sign along the path is that of
 q'; viscous friction is linear in sqrt(x), so this law refuses it. The coefficients are exact at the gridpoints, where
 the limits are kept on both sides (toppra's interpolation scheme); in between they are kept to the order of the grid,
-which `verify` measures. The law has bang-bang s'': it keeps no jerk limit and refuses one.
+which `verify` measures. What it cannot keep, such as a jerk limit under its bang-bang s'', it refuses by name.
 """
 
 from __future__ import annotations
@@ -35,6 +35,11 @@ from trajectory.timed import TimedPath
 from trajectory.timing import TimeLaw
 
 LEAST_INTERVALS = 1000
+_REFUSED = {
+    "jerk": "its s'' is bang-bang",
+    "stall_torque": "the speed-torque line is not linear in u and x",
+    "rms_torque": "it is a limit of the whole way, not of an instant",
+}
 _FACETS = 32  # of the half disc inside the tool acceleration's; the cap is kept and at most 0.12 % is given away
 Coefficients = tuple[Array, Array, Array]  # a, b, c, each (N + 1, rows): |a u + b x + c| <= 1
 Parameters = tuple[Array | None, ...]
@@ -46,20 +51,21 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     Args:
         robot: any mechanism with the path's kind of pose.
         path: smooth, without a cusp.
-        limits: of joints and tool; without jerk.
+        limits: of joints and tool; without jerk, speed-torque line and RMS torque.
         payload: mass at the tool [kg].
         intervals: N, of equal arc length, at least 1000.
 
     Raises:
-        InvalidValue: a jerk limit, viscous friction where torque is limited, too few intervals, a negative payload, or
-            another kind of pose.
+        InvalidValue: a limit that it cannot keep, viscous friction where torque is limited, too few intervals, a
+            negative payload, or another kind of pose.
         RoughPath: the path has a cusp or a kink.
         UnreachablePose: a limb cannot reach a pose of the path; the limb and its margin are named.
         TimingFailed: there is no law within the limits, as where the weight alone is beyond the torque.
     """
     require_poses_of(robot, path)
-    if limits.jerk is not None:
-        raise InvalidValue("Limits jerk for the toppra law", limits.jerk, "None: its s'' is bang-bang")
+    for name, why in _REFUSED.items():
+        if getattr(limits, name) is not None:
+            raise InvalidValue(f"Limits {name} for the toppra law", getattr(limits, name), f"None: {why}")
     viscous = robot.inertia.drive_train.viscous
     if limits.torque is not None and np.any(np.asarray(viscous) > 0.0):
         raise InvalidValue("DriveTrain viscous for the toppra law", viscous, "0: its limits are linear in s'^2, not s'")

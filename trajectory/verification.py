@@ -18,8 +18,9 @@ from kinematics import Mechanism
 from kinematics.drives import from_actuators
 from trajectory.limits import Limits
 from trajectory.motion import Motion, motion_of
-from trajectory.path import Array, places
+from trajectory.path import Array
 from trajectory.timed import TimedMotion
+from trajectory.usage import Use, uses
 
 LEAST_PARTS = 10  # of each interval of the law
 LEAST_STEPS = 10_000  # of the whole path, about
@@ -40,13 +41,13 @@ _TOLERANCES = {  # SI, the closure in m^2; the two integrals are relative
 class Peak(NamedTuple):
     """The largest magnitude of one quantity, and where it is; SI units.
 
-    `joint` is None for the tool; `limit` and `ratio` are None where nothing limits the quantity. Where each joint has
-    a limit of its own, it is the peak of their ratios.
+    `joint` is None for the tool, `time` for a mean over the way; `limit` and `ratio` are None where nothing limits the
+    quantity. Where each joint has a limit of its own, it is the peak of their ratios.
     """
 
     quantity: str
     joint: str | None
-    time: float
+    time: float | None
     value: float
     limit: float | None
     ratio: float | None
@@ -59,7 +60,8 @@ class Verification:
     Attributes:
         law: name of the law.
         duration: of the motion [s].
-        peaks: of joint speed, joint acceleration, torque, joint jerk, tool speed, tool acceleration.
+        peaks: of joint speed, joint acceleration, torque, tool speed, tool acceleration, joint jerk, rms torque; of
+            joint position and torque at speed where they are limited.
         residuals: of end poses, end speeds, loop closure and forward model, SI; of the joints' integrals, over the
             largest speed and over the way of the joints.
         reach: the worst limb's margin [m]; negative or NaN fails.
@@ -125,11 +127,11 @@ def verify(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float)
     times, tool = timed.within(sampling(timed))
     motion = motion_of(robot, tool, payload)
     peaks, notes = _peaks(robot, times, motion, limits)
-    rms = np.sqrt(_integrals(times, motion.torque**2).sum(axis=0) / timed.duration)
+    rms = np.sqrt(integrals(times, motion.torque**2).sum(axis=0) / timed.duration)
     return Verification(
         law=timed.name,
         duration=timed.duration,
-        peaks=peaks,
+        peaks=(*peaks, _rms_peak(robot, rms, limits.of_joints("rms_torque", rms.size))),
         residuals=_residuals(robot, timed, motion) | _integral_residuals(times, motion),
         reach=_least(robot.margin("reach", motion.tool.pose)),
         rms_torque=rms,
@@ -146,38 +148,32 @@ def sampling(timed: TimedMotion) -> Array:
 
 
 def _peaks(robot: Mechanism, times: Array, motion: Motion, limits: Limits) -> tuple[tuple[Peak, ...], tuple[str, ...]]:
-    names = robot.actuator_names
-
-    def of_joints(quantity: str, values: Array, field: str) -> Peak:
-        limit = limits.of_joints(field, len(names))
-        scaled = np.abs(values) / (1.0 if limit is None else limit)
-        row, part, joint = (int(k) for k in np.unravel_index(int(scaled.argmax()), scaled.shape))
-        value = abs(float(values[row, part, joint]))
-        bound, ratio = (None, None) if limit is None else (float(limit[joint]), float(scaled[row, part, joint]))
-        return Peak(quantity, names[joint], float(times[row, part]), value, bound, ratio)
-
-    def of_tool(quantity: str, values: Array, limit: float | None) -> Peak:
-        size = np.linalg.norm(values[..., : places(robot.pose_names)], axis=-1)
-        where = np.unravel_index(int(size.argmax()), size.shape)
-        ratio = None if limit is None else float(size[where]) / limit
-        return Peak(quantity, None, float(times[where]), float(size[where]), limit, ratio)
-
-    peaks = [
-        of_joints("joint speed", motion.joints.first, "speed"),
-        of_joints("joint acceleration", motion.joints.second, "acceleration"),
-        of_joints("torque", motion.torque, "torque"),
-        of_tool("tool speed", motion.tool.velocity, limits.tool_speed),
-        of_tool("tool acceleration", motion.tool.acceleration, limits.tool_acceleration),
-    ]
+    found = uses(robot, motion, limits)
     jump_time, jump = _jump(times, motion.joints.second)
     if jump <= _SMOOTH * np.abs(motion.joints.second).max():
-        peaks.append(of_joints("joint jerk", motion.joints.third, "jerk"))
-        return tuple(peaks), ()
-    if limits.jerk is not None:
-        peaks.append(Peak("joint jerk", None, jump_time, math.inf, float(np.min(limits.jerk)), math.inf))
+        return tuple(_peak(robot, times, name, use) for name, use in found.items()), ()
+    jerk = found.pop("joint jerk").limit
+    peaks = [_peak(robot, times, name, use) for name, use in found.items()]
+    if jerk is not None:
+        peaks.append(Peak("joint jerk", None, jump_time, math.inf, float(jerk.min()), math.inf))
     return tuple(peaks), (
         f"joint jerk left out: a joint acceleration jumps by {jump:.4g}, where the jerk is an impulse",
     )
+
+
+def _peak(robot: Mechanism, times: Array, quantity: str, use: Use) -> Peak:
+    size = np.abs(use.value) if use.ratio is None else use.ratio
+    where = np.unravel_index(int(size.argmax()), size.shape)
+    joint = robot.actuator_names[where[-1]] if size.shape[-1] == len(robot.actuator_names) else None
+    bound, ratio = (None, None) if use.limit is None else (float(use.limit[where]), float(size[where]))
+    return Peak(quantity, joint, float(times[where[:-1]]), float(use.value[where]), bound, ratio)
+
+
+def _rms_peak(robot: Mechanism, rms: Array, limit: Array | None) -> Peak:
+    size = rms if limit is None else rms / limit
+    joint = int(size.argmax())
+    bound, ratio = (None, None) if limit is None else (float(limit[joint]), float(size[joint]))
+    return Peak("rms torque", robot.actuator_names[joint], None, float(rms[joint]), bound, ratio)
 
 
 def _jump(times: Array, acceleration: Array) -> tuple[float, float]:
@@ -208,15 +204,15 @@ def _residuals(robot: Mechanism, timed: TimedMotion, motion: Motion) -> dict[str
 def _integral_residuals(times: Array, motion: Motion) -> dict[str, float]:
     """What the joints' derivatives, integrated from the start, do not explain; a cusp at speed v leaves about 2 v."""
     joints = motion.joints
-    jump = joints.first[:, -1] - joints.first[0, 0] - _integrals(times, joints.second).cumsum(axis=0)
-    gap = joints.position[:, -1] - joints.position[0, 0] - _integrals(times, joints.first).cumsum(axis=0)
+    jump = joints.first[:, -1] - joints.first[0, 0] - integrals(times, joints.second).cumsum(axis=0)
+    gap = joints.position[:, -1] - joints.position[0, 0] - integrals(times, joints.first).cumsum(axis=0)
     return {
         "integral of acceleration": _largest(jump) / _largest(joints.first),
         "integral of speed": _largest(gap) / max(float(np.ptp(joints.position, axis=(0, 1)).max()), _LEAST_WAY),
     }
 
 
-def _integrals(times: Array, values: Array) -> Array:
+def integrals(times: Array, values: Array) -> Array:
     """(k, j, m) values at equal parts of each interval -> (k, m) integrals over its time, by Simpson's rule."""
     parts = values.shape[1] - 1
     weights = np.full(parts + 1, 2.0)

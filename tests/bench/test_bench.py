@@ -14,7 +14,7 @@ from design.nlp import Problem, solve
 from design.synthesis import synthesise
 from kinematics import Heli4
 from tests.bench import peers
-from trajectory import AdeptCycle, Limits, time_optimal
+from trajectory import AdeptCycle, Limits, jerk_limited, repair, time_optimal
 
 COUNT = 200_000
 REGION = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-math.pi, math.pi))
@@ -77,3 +77,11 @@ def test_toppra(benchmark: Any, intervals: int) -> None:
     timing = partial(time_optimal, ROBOT, AdeptCycle(), limits, 1.0, intervals=intervals)
     law = benchmark.pedantic(timing, rounds=3, warmup_rounds=1)
     benchmark.extra_info["half_cycle"] = law.duration
+
+
+@pytest.mark.parametrize("intervals", [80, 120, 160, 240])
+def test_jerk_law(benchmark: Any, intervals: int) -> None:
+    limits = Limits(speed=20.0, torque=127.0, jerk=1e5)
+    timing = partial(jerk_limited, ROBOT, AdeptCycle(), limits, 1.0, intervals=intervals)
+    law = benchmark.pedantic(timing, rounds=3, warmup_rounds=1)
+    benchmark.extra_info["half_cycle"] = repair(ROBOT, law, limits, 1.0).motion.duration

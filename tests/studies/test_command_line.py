@@ -75,6 +75,28 @@ def test_an_approach_keeps_the_drives_limits_too(tmp_path: Path) -> None:
     assert "torque" in ended.stderr
 
 
+def test_one_study_serves_every_law() -> None:
+    found = {}
+    for law in ("jerk", "toppra"):
+        ended = linkwright("trajectory", "cycle_reference", "--law", law, "--json")
+        assert ended.returncode == 0, ended.stderr
+        found[law] = json.loads(ended.stdout)
+        assert found[law]["law"] == law
+        assert max(found[law]["peak_over_limit"].values()) <= 1.0
+    assert found["toppra"]["half_cycle"] < found["jerk"]["half_cycle"] <= 0.1325
+    assert "joint jerk" in found["jerk"]["peak_over_limit"]
+    assert "joint jerk" not in found["toppra"]["peak_over_limit"]
+    assert found["toppra"]["limits_not_kept"] == ["jerk"]
+
+
+def test_an_unknown_law_and_a_law_without_its_limit_are_wrong_input(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(SMALL)
+    for law, said in (("fast", "expected one of jerk, toppra"), ("jerk", "Limits jerk for the jerk law")):
+        ended = linkwright("trajectory", tmp_path, "--prototype", "--law", law)
+        assert ended.returncode == 2
+        assert said in ended.stderr
+
+
 def test_an_unknown_study_is_answered_with_the_known_ones(tmp_path: Path) -> None:
     ended = linkwright("run", "heli5", cwd=tmp_path)
     assert ended.returncode == 2

@@ -98,6 +98,21 @@ FAULTS = {
         "a whole number > 0, or one a joint",
     ),
     "payload": ("payload = 1.0", "payload = -1", "trajectory.cycle.payload", "a mass >= 0 (kg)"),
+    "payload back": (
+        "payload = 1.0",
+        "payload = 1.0\npayload_back = -1",
+        "trajectory.cycle.payload_back",
+        "a mass >= 0",
+    ),
+    "line without its torque": ("jerk = 1e5", "no_load_speed = 30", "trajectory.limits.no_load_speed", "stall_torque"),
+    "range": ("jerk = 1e5", "position = [2, 1]", "trajectory.limits.position", "low < high"),
+    "one range of two": (
+        "jerk = 1e5",
+        "position = [[1, 2], [2, 1]]",
+        "trajectory.limits.position",
+        "such pair a joint",
+    ),
+    "rms": ("jerk = 1e5", "rms_torque = 0", "trajectory.limits.rms_torque", "a number > 0"),
     "joint limit": ("torque = 127", "torque = [1, 0]", "trajectory.limits.torque", "> 0, or one a joint"),
     "no limits": ("torque = 127", "torque = []", "trajectory.limits.torque", "found []"),
 }

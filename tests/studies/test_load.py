@@ -7,9 +7,11 @@ from pathlib import Path
 import pytest
 from pydantic import ValidationError
 
+from studies.errors import StudyError
 from studies.load import load_study
 from studies.mechanisms import UnknownMechanism, mechanism_class
 from studies.schema import BoxRegion, CylinderRegion
+from studies.setup import limits_of
 
 Write = Callable[[str], Path]
 
@@ -117,3 +119,23 @@ def test_an_unknown_mechanism_carries_the_known_names() -> None:
     with pytest.raises(UnknownMechanism, match="unknown mechanism 'Fale'; known: Fake") as caught:
         mechanism_class("Fale")
     assert (caught.value.name, caught.value.known) == ("Fale", ("Fake",))
+
+
+def test_limits_of_ranges_lines_and_rms_are_read_and_half_a_line_is_not(write: Write, study_text: str) -> None:
+    more = (
+        "jerk = 1e5\nposition = [[-1, 2], [0, 1]]\nstall_torque = 150\nno_load_speed_rpm = 300\nrms_torque = [70, 80]"
+    )
+    study = load_study(write(study_text.replace("jerk = 1e5", more)))
+    assert study.trajectory is not None
+    limits = limits_of(study.trajectory.limits)
+    assert limits.position == ((-1.0, 2.0), (0.0, 1.0))
+    assert (limits.stall_torque, limits.no_load_speed) == (150.0, pytest.approx(10 * math.pi))
+    assert limits.rms_torque == (70.0, 80.0)
+    with pytest.raises(StudyError, match=r"trajectory.limits.no_load_speed: found nothing; expected .* stall_torque"):
+        load_study(write(study_text.replace("jerk = 1e5", "stall_torque = 150")))
+
+
+def test_the_law_is_jerk_unless_the_study_says_otherwise(write: Write, study_text: str) -> None:
+    study = load_study(write(study_text.replace('law = "toppra"\n', "")))
+    assert study.trajectory is not None
+    assert study.trajectory.law == "jerk"

@@ -121,6 +121,8 @@ def test_a_torque_limit_below_the_weight_has_no_law(robot: Heli4, path: AdeptCyc
     ("changes", "intervals", "payload", "what"),
     [
         ({"jerk": 1e5}, 2000, 1.0, "jerk"),
+        ({"rms_torque": 76.0}, 2000, 1.0, "rms_torque"),
+        ({"stall_torque": 150.0, "no_load_speed": 25.0}, 2000, 1.0, "stall_torque"),
         ({}, 999, 1.0, "intervals"),
         ({}, 2000, -1.0, "payload"),
         ({}, 2000, math.nan, "payload"),
