@@ -18,6 +18,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics import Mechanism
+from kinematics.block_program import BlockProgram
 from kinematics.box_program import BoxProgram
 from kinematics.dynamics import torques
 from kinematics.interpreter import bulk, evaluate
@@ -118,7 +119,7 @@ def _path_boxes(path: Path, edges: Array) -> tuple[list[Array], Array, Array]:
 
 
 @lru_cache(maxsize=16)
-def _programs(robot: Mechanism, payload: float) -> tuple[Program, BoxProgram]:
+def _programs(robot: Mechanism, payload: float) -> tuple[BlockProgram, BoxProgram]:
     """Torque's a, b, c and w and the actuators' first two derivatives by s, (m,) each side by side; their slopes."""
     model = robot.model()
     first, second, third = (ca.SX.sym(name, model.pose.shape[0]) for name in ("first", "second", "third"))

@@ -8,7 +8,7 @@ from typing import Protocol, Self
 import numpy as np
 
 from kinematics import InvalidValue
-from trajectory.motion import PoseMotion, pose_motion
+from trajectory.motion import PoseMotion, largest_rates, pose_motion, steepest_travelled
 from trajectory.path import Array, Path
 from trajectory.timing import TimeLaw
 
@@ -124,17 +124,11 @@ class TimedPath:
     def steepest_jerk(self, low: Array, high: Array) -> Array:
         """As `TimedMotion.steepest_jerk`: the chain rule on p(s(t)), each term bounded."""
         along, half = self.law.at(0.5 * low + 0.5 * high), (high - low) * (0.5 + _ROUNDING)
-        jerk = np.abs(along.jerk)
-        acceleration = np.abs(along.acceleration) + half * jerk
-        speed = along.speed + half * acceleration
-        away = half * speed
+        speed, *_ = rates = largest_rates(along, half)
         _, _, second, third = self.path.evaluate(along.position, 3)
+        away = half * speed
         first_s, last_s = (np.clip(along.position + d, 0.0, self.path.length) for d in (-away, away))
-        fourth = self._steepest_third(first_s, last_s)
-        third = np.abs(third) + away[:, None] * fourth
-        second = np.abs(second) + away[:, None] * third
-        v, a, j = (x[:, None] for x in (speed, acceleration, jerk))
-        return fourth * v**4 + 6 * third * v**2 * a + second * (4 * v * j + 3 * a**2)
+        return steepest_travelled(second, third, self._steepest_third(first_s, last_s), away, rates)
 
     def _steepest_third(self, low: Array, high: Array) -> Array:
         """Of all pieces of the path between two arc lengths (k,)."""
