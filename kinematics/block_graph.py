@@ -7,8 +7,8 @@ is x / y, and x - (x - y) is y. The value stays the same but for rounding where 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
 
 from kinematics.program import Op, Program
 
@@ -27,8 +27,7 @@ class Block(IntEnum):
     TWO_PRODUCTS = 70  # k x y + c u v
 
 
-@dataclass(frozen=True)
-class Node:
+class Node(NamedTuple):
     """op(rows...) with the constants k and c."""
 
     op: int

@@ -10,6 +10,7 @@ import numpy as np
 from kinematics.block_graph import Block, Graph, Node
 from kinematics.program import Op, Program
 
+_LEAVES = (int(Op.INPUT), int(Op.CONST))
 _SCALED = (Block.SUM, Block.PRODUCT, Block.PRODUCT_AFFINE, Block.PRODUCT_SUM, Block.TWO_PRODUCTS)
 
 
@@ -55,7 +56,7 @@ def _needed(nodes: list[Node], outputs: dict[int, int]) -> set[int]:
 
 
 def _operands(node: Node) -> tuple[int, ...]:
-    return () if node.op in (Op.INPUT, Op.CONST) else node.rows
+    return () if node.op in _LEAVES else node.rows
 
 
 def _reciprocals(graph: Graph) -> list[Node]:

@@ -10,6 +10,7 @@ import operator
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from itertools import accumulate
 from typing import Any
 
 import casadi as ca
@@ -99,21 +100,21 @@ class Program:
         """
         inputs = tuple(function.nnz_in(i) for i in range(function.n_in()))
         outputs = tuple(function.size_out(i) for i in range(function.n_out()))
-        input_start = np.concatenate([[0], np.cumsum(inputs)])
-        output_start = np.concatenate([[0], np.cumsum([r * c for r, c in outputs])])
+        input_start = [0, *accumulate(inputs)]
+        output_start = [0, *accumulate(r * c for r, c in outputs)]
         places = [_dense_places(function.sparsity_out(i)) for i in range(function.n_out())]
         rows: list[tuple[int, int, int, int, float]] = []
-        load, take, give = Op.CONST, Op.INPUT, Op.OUTPUT
+        load, take, give = int(Op.CONST), int(Op.INPUT), int(Op.OUTPUT)
         for k in range(function.n_instructions()):
             code = function.instruction_id(k)
             if code not in _FROM_CASADI:
                 raise UnknownOperation(function.name(), code)
-            op = _FROM_CASADI[code]
+            op = int(_FROM_CASADI[code])
             source, sink = function.instruction_input(k), function.instruction_output(k)
-            constant = function.instruction_constant(k) if op is load else 0.0
-            if op is take:
+            constant = function.instruction_constant(k) if op == load else 0.0
+            if op == take:
                 rows.append((op, input_start[source[0]] + source[1], 0, sink[0], constant))
-            elif op is give:
+            elif op == give:
                 rows.append((op, source[0], 0, output_start[sink[0]] + places[sink[0]][sink[1]], constant))
             else:
                 left, right = (*source, 0, 0)[:2]
