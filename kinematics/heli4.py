@@ -22,7 +22,7 @@ from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array, Build
 from kinematics.model import Model
 from kinematics.polynomial import real_roots
-from kinematics.rods import RodLevel
+from kinematics.rods import RodLevel, outline
 from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, radial_directions, upright_limbs
 from kinematics.twins import twins_of_halves
 
@@ -169,10 +169,7 @@ class Heli4(RotaryLimbs, RodLevel):
         lines = {"base": base[:, order]}
         for i in range(4):
             lines[f"arm {i + 1}"] = ca.horzcat(base[:, i], arms[:, i])
-            lines[f"rods {i + 1}"] = ca.horzcat(
-                arms[:, i] - half[:, i], platform[:, i] - half[:, i], platform[:, i] + half[:, i],
-                arms[:, i] + half[:, i], arms[:, i] - half[:, i],
-            )  # fmt: skip
+            lines[f"rods {i + 1}"] = outline(arms[:, i], platform[:, i], half[:, i])
         lines["platform lower"] = platform[:, [0, 1]]
         lines["platform upper"] = platform[:, [2, 3]]
         pointer = pose[:3] + g.platform_radius * ca.vertcat(ca.cos(pose[3]), ca.sin(pose[3]), 0)

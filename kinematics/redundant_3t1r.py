@@ -29,7 +29,7 @@ from kinematics.redundancy import BestFit, EncoderCheck, check_encoders, least_s
 from kinematics.redundant_3t1r_clearance import arm_distances, arms_apart
 from kinematics.redundant_3t1r_forward import candidate_build
 from kinematics.redundant_3t1r_geometry import Redundant3T1RGeometry, Redundant3T1RInertia, Redundant3T1RRanges
-from kinematics.rods import RodLevel
+from kinematics.rods import RodLevel, outline
 
 _LIMBS = 6
 _AHEAD = ca.DM([-0.5, -0.5, 0.5, 0.5, -0.5, -0.5])  # B_i along the platform's x, in units of d
@@ -198,14 +198,13 @@ class Redundant3T1R(RodLevel):
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
         """A stretch of each rail about its slide, the arms (both rods of 3 and 4), and the platform."""
         rails, platform = Redundant3T1R.rail_points(joints, g), Redundant3T1R.platform_points(pose, g)
-        stretch = ca.vertcat(g.outer_arm_length / 4, 0, 0)
-        half = ca.vertcat(0, 0, g.parallelogram_width / 2)
+        stretch, half = ca.vertcat(g.outer_arm_length / 4, 0, 0), ca.vertcat(0, 0, g.parallelogram_width / 2)
         lines = {}
         for i in range(_LIMBS):
             lines[f"rail {i + 1}"] = ca.horzcat(rails[:, i] - stretch, rails[:, i] + stretch)
             a, b = rails[:, i], platform[:, i]
             if i in _PARALLELOGRAMS:
-                lines[f"rods {i + 1}"] = ca.horzcat(a - half, b - half, b + half, a + half, a - half)
+                lines[f"rods {i + 1}"] = outline(a, b, half)
             else:
                 lines[f"arm {i + 1}"] = ca.horzcat(a, b)
         middle = (platform[:, 0] + platform[:, 4]) / 2

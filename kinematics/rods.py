@@ -81,3 +81,8 @@ class RodLevel(Mechanism):
         left = ca.DM(cls.row_combinations) @ j_l
         right = ca.DM(cls.row_combinations) @ j_r @ ca.DM(cls.column_combinations)
         return left[:m, :], right[:m, :n], right[:m, n:], right[m:, n:]
+
+
+def outline(start: ca.SX, end: ca.SX, half: ca.SX) -> ca.SX:
+    """(3, 5) the parallelogram of a limb's two rods, `half` (3,) to either side of the line between two points."""
+    return ca.horzcat(start - half, end - half, end + half, start + half, start - half)
