@@ -12,17 +12,15 @@ from studies.schema import (
     REGION_KINDS,
     BoxRegion,
     Certify,
-    Cycle,
     CylinderRegion,
     Optimise,
     Requirement,
     Study,
     Sum,
-    Trajectory,
-    Waypoint,
-    WaypointPath,
-    table_of,
 )
+from studies.schema_base import table_of
+from studies.schema_path import Cycle, Waypoint, WaypointPath
+from studies.schema_trajectory import Trajectory
 from studies.units import Dimension, Key, Table
 
 if TYPE_CHECKING:

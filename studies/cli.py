@@ -213,7 +213,7 @@ def trajectory(
     from studies import console
     from studies.outputs import write_setpoints
     from studies.pipeline import time_cycle
-    from studies.schema import LAWS
+    from studies.schema_trajectory import LAWS
 
     if law is not None and law not in LAWS:
         raise InvalidValue("--law", law, f"one of {', '.join(LAWS)}")

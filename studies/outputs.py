@@ -17,7 +17,8 @@ from studies.committed_proofs import proof_files
 from studies.optimum import FILE, optimum_of
 from studies.pipeline import Outcome, Timing
 from studies.report import html_report, pictures_of
-from studies.schema import Study, Trajectory
+from studies.schema import Study
+from studies.schema_trajectory import Trajectory
 from trajectory import CannotWrite, write_files
 from trajectory.drive_files import drive_files
 
