@@ -49,6 +49,14 @@ class InertiaRecord:
         if self.rod_middle > 1.0:
             raise InvalidValue(f"{type(self).__name__} rod_middle", self.rod_middle, "a share, at most 1")
 
+    def check(self, count: int) -> None:
+        """Check that every drive's data suits `count` actuators.
+
+        Raises:
+            InvalidValue: naming the field.
+        """
+        self.drive_train.check(count)
+
 
 class Particle(NamedTuple):
     """A mass [kg] at a point (3,) [m] of a link."""

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from studies.schema_base import Interval, Model, Name, Positive, gathered, table_of
+from studies.schema_hardware import Inertia, Ranges
 from studies.schema_trajectory import Trajectory
 from studies.units import Dimension, Key, Table
 
@@ -98,6 +99,8 @@ class Study(Model):
     mechanism: Annotated[str, Key("one of")]
     geometry: Annotated[dict[str, GeometryValue], Field(default_factory=dict), Table({})]
     """What differs from the prototype's geometry [m, rad, m per turn]."""
+    inertia: Annotated[Inertia, Table({})] = Inertia()
+    ranges: Annotated[Ranges, Field(default_factory=dict), Table({})]
     region: Annotated[Annotated[BoxRegion | CylinderRegion, Field(discriminator="kind")], Table({})]
     fvi: Annotated[Fvi | None, table_of(Fvi)] = None
     """None takes the mechanism's defaults."""

@@ -12,8 +12,10 @@ from design import Bounds, Box, Cylinder, Region, Requirement, SumLimit
 from design.nlp import Problem
 from kinematics import FviBounds, InvalidValue, Mechanism
 from kinematics.drives import to_actuators
+from kinematics.geometry import GeometryRecord
 from studies import schema_path, schema_trajectory
 from studies.errors import StudyError
+from studies.hardware import inertia_of, ranges_of
 from studies.mechanisms import mechanism_class
 from studies.schema import CylinderRegion, Study
 from studies.toml_file import read_toml
@@ -24,10 +26,10 @@ from trajectory.drive_files import Drive, drive_files
 OBJECTIVE = "fvi"
 
 
-def robot_of(study: Study) -> Mechanism:
-    """The study's mechanism: the prototype with the study's own geometry on top."""
+def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
+    """The study's mechanism, masses and joint ranges; `geometry` in place of the prototype with the study's changes."""
     kind = mechanism_class(study.mechanism)
-    return kind(kind.Geometry(**study.geometry))
+    return kind(geometry or kind.Geometry(**study.geometry), inertia_of(study), ranges_of(study))
 
 
 def region_of(study: Study) -> Region:
