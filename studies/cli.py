@@ -213,7 +213,7 @@ def trajectory(
     from studies import console
     from studies.outputs import write_setpoints
     from studies.pipeline import time_cycle
-    from studies.schema import LAWS
+    from studies.schema_trajectory import LAWS
 
     if law is not None and law not in LAWS:
         raise InvalidValue("--law", law, f"one of {', '.join(LAWS)}")
@@ -259,9 +259,9 @@ def export(
     out: Annotated[Path, typer.Option("--out", help="The file to write.")],
     format_: Annotated[Literal["mjcf"], typer.Option("--format", help="MJCF, MuJoCo's format.")] = "mjcf",  # noqa: ARG001
     rods: Annotated[
-        Literal["split", "uniform"],
-        typer.Option("--rods", help="Masses at the rods' ends, as the torques of a study have it, or rods as bodies."),
-    ] = "split",
+        Literal["split", "uniform"] | None,
+        typer.Option("--rods", help="Masses at the rods' ends, or rods as bodies (default: as the study has it)."),
+    ] = None,
     json: JsonOption = False,
     prototype: PrototypeOption = False,
 ) -> None:
@@ -273,7 +273,8 @@ def export(
     asked = _load(study)
     robot = _robot(study, asked, prototype)
     _require_writable(out.parent)
-    written = write_model(robot, asked, UNIFORM if rods == "uniform" else 0.0, out)
+    rod_middle = None if rods is None else {"split": 0.0, "uniform": UNIFORM}[rods]
+    written = write_model(robot, asked, rod_middle, out)
     console.print_files([written], json)
 
 

@@ -16,10 +16,11 @@ from design.region import Region
 from design.search import WorstPoses
 from design.synthesis import Progress, Synthesis, synthesise, worst_of
 from kinematics import Mechanism
-from studies import schema, setup
+from studies import setup
 from studies.certify import Proof, Question, prove_all
 from studies.errors import Failed, RequirementFailed
 from studies.schema import Study
+from studies.schema_trajectory import Trajectory
 from trajectory import Cycle, Move, Setpoints, cycle_setpoints, there_and_back
 
 
@@ -141,7 +142,7 @@ def optimise(study: Study, progress: Progress) -> Synthesis:
     )
 
 
-def margins_on_path(problem: Problem, robot: Mechanism, asked: schema.Trajectory) -> dict[str, float]:
+def margins_on_path(problem: Problem, robot: Mechanism, asked: Trajectory) -> dict[str, float]:
     """The worst value of each requirement's margin on the cycle's path; NaN counts as -inf."""
     path = setup.path_of(asked, robot.pose_names)
     (poses,) = path.evaluate(np.linspace(0.0, path.length, asked.grid + 1), 0)
@@ -152,7 +153,7 @@ def margins_on_path(problem: Problem, robot: Mechanism, asked: schema.Trajectory
     return found
 
 
-def time_cycle(asked: schema.Trajectory, robot: Mechanism) -> Timing:
+def time_cycle(asked: Trajectory, robot: Mechanism) -> Timing:
     """Time, verify and sample the study's cycle on a robot."""
     from trajectory.moves import plan_move
 
