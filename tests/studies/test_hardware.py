@@ -122,6 +122,15 @@ def test_a_machine_twice_as_heavy_and_as_strong_is_as_fast(tmp_path: Path) -> No
     assert times[2] > 1.2 * times[0]
 
 
+def test_a_machine_without_masses_is_as_fast_as_its_speed_limit_lets_it_and_bears_no_torque(tmp_path: Path) -> None:
+    masses = "drive = 0\narm_mass = 0\nrod_pair_mass = 0\nplate_masses = [0, 0]\ntool = 0\n"
+    study = study_of(tmp_path, GIVEN.replace("payload = 0.5", "payload = 0") + "[inertia]\n" + masses)
+    assert study.trajectory is not None
+    figures = time_cycle(study.trajectory, robot_of(study)).figures()
+    assert figures["peak_over_limit"]["joint speed"] == pytest.approx(1.0, abs=1e-3)
+    assert figures["peak_over_limit"]["torque"] == figures["worst_rms_over_peak_torque"] == 0.0
+
+
 def test_room_to_the_joints_limits_is_proved_or_refuted_as_the_study_has_them(tmp_path: Path) -> None:
     """The bound just below and just above the least that is left on a grid of 14,641 poses."""
     study = study_of(tmp_path, GIVEN + HARDWARE)
