@@ -68,7 +68,7 @@ class Verification:
             largest speed and over the way of the joints.
         reach: the worst limb's margin [m]; negative or NaN fails.
         rms_torque: (m,) over the whole duration [N m or N].
-        rms_over_peak: (m,) each joint's RMS torque over its own peak.
+        rms_over_peak: (m,) each joint's RMS torque over its own peak; 0 where it bears none.
         proved: each limited quantity over its limit is at most this at every instant; empty where a peak fails already.
         notes: what was left out, and why.
     """
@@ -140,6 +140,7 @@ def verify(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float)
     times, tool = timed.within(sampling(timed))
     motion = motion_of(robot, tool, payload)
     peaks, notes = _peaks(robot, times, motion, limits)
+    peak = np.abs(motion.torque).max(axis=(0, 1))
     rms = np.sqrt(integrals(times, motion.torque**2).sum(axis=0) / timed.duration)
     found = Verification(
         law=timed.name,
@@ -148,7 +149,7 @@ def verify(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float)
         residuals=_residuals(robot, timed, motion) | _integral_residuals(times, motion),
         reach=_least(robot.margin("reach", motion.tool.pose)),
         rms_torque=rms,
-        rms_over_peak=rms / np.abs(motion.torque).max(axis=(0, 1)),
+        rms_over_peak=np.divide(rms, peak, out=np.zeros_like(rms), where=rms != 0.0),
         proved={},
         notes=notes,
     )
