@@ -40,7 +40,7 @@ def test_a_free_vertical_fall_against_friction_takes_as_long_as_by_hand(straight
     counts on no friction where it comes to rest.
     """
     light = Heli4.Inertia(
-        drive=0.0, arm_mass=0.0, rod_pair_mass=0.0, plate_masses=(1.0, 1.0), drive_train=DriveTrain(coulomb=3.0)
+        drive=0.0, arm_mass=0.0, rod_mass=0.0, plate_masses=(1.0, 1.0), drive_train=DriveTrain(coulomb=3.0)
     )
     line = straight(start=(0.0, 0.0, -0.7, 0.0), direction=(0.0, 0.0, -1.0, 0.0), length=1e-3)
     robot, limit = Heli4(inertia=light), 10.0

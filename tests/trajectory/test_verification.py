@@ -83,8 +83,8 @@ def test_work_of_the_drives_is_the_gain_of_height(robot: Heli4, path: AdeptCycle
     power = (motion.torque * motion.joints.first).sum(axis=-1)
     work = ((power * simpson).sum(axis=1) * np.diff(timed.times)).sum()
     g, i = robot.geometry, robot.inertia
-    climb = (i.plate_masses[1] + i.rod_pair_mass) * g.pitch * path.turn / (2 * math.pi)
-    arm = (i.arm_mass * i.arm_centre + i.rod_pair_mass / 2) * g.arm_length
+    climb = (i.plate_masses[1] + i.rod_mass) * g.pitch * path.turn / (2 * math.pi)
+    arm = (i.arm_mass * i.arm_centre + i.rod_mass / 2) * g.arm_length
     start, end = robot.inverse(path.evaluate(np.array([0.0, path.length]), 0)[0])
     gain = GRAVITY * (climb + arm * (np.cos(end) - np.cos(start)).sum())
     assert work == pytest.approx(gain, abs=1e-6)
