@@ -27,14 +27,16 @@ def topp2(case: Case, stations: int = STATIONS) -> TimedPath:
     return TimedPath(case.path, TimeLaw.constant_acceleration("copp TOPP2", problem.s * case.path.length, speed))
 
 
-def topp3(case: Case, stations: int = STATIONS) -> TimedPath:
-    """With the jerk limit, by its conic solver."""
+def topp3(case: Case, stations: int = STATIONS, at_rest: int = 1) -> TimedPath:
+    """With the jerk limit, by its conic solver; `at_rest` intervals of constant jerk at both ends."""
     problem = _Problem(case, stations, topp2(case, stations).duration)
     jerk = problem.rows(case.limit("jerk"), 3)
     problem.robot.add_jerk_limits(jerk, -jerk, start_idx_s=0)
     solver, x, u, last = copp.solver.topp3_socp, problem.topp2(), None, np.inf
     for _ in range(_ROUNDS):
-        found = solver.solve(solver.Problem(problem.robot.constraints, x, b_linearization=u))
+        found = solver.solve(
+            solver.Problem(problem.robot.constraints, x, num_stationary_max=at_rest, b_linearization=u)
+        )
         duration, times = copp.interpolation.s_to_t_topp3(problem.s, found)
         if abs(last - duration) < _CLOSE * duration:
             return smooth_law(case, "copp TOPP3", times * problem.unit, found.b)

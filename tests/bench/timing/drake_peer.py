@@ -1,13 +1,12 @@
-"""Drake's Toppra, which knows a robot only as an open tree: no torque limit of a closed loop can be given to it.
+"""Drake's Toppra, which knows a robot only as an open tree: a closed loop's torque limit cannot be given to it.
 
-What it can be given is the drives' path q(s), their speed, and one acceleration, the same for all drives, that stands in
-for the torque: the largest whose law keeps it, found by solving again.
+What it can be given is the drives' path q(s), their speeds, and one acceleration for all of them, which stands in for
+the torque: the largest whose law keeps the torque at its stations, found by solving again.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from pydrake.math import RigidTransform
 from pydrake.multibody.optimization import Toppra
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import PrismaticJoint, SpatialInertia
@@ -20,13 +19,62 @@ from trajectory.path import Array
 
 INTERVALS = 1000
 _ROUNDS = 8
-_CLOSE = 1e-4  # relative, of the acceleration
+_CLOSE = 1e-3  # relative, of the torque
 
 
 def toppra(case: Case) -> TimedPath:
-    """With the largest stand-in for the torque."""
-    at = sampled(case, np.linspace(0.0, case.path.length, INTERVALS + 1))
-    path = PiecewisePolynomial.CubicWithContinuousSecondDerivatives(at.s, at.joints.position.T, *at.joints.first[[0, -1]][:, :, None])
-    plant = _drives(at.a.shape[1])
-    acceleration = float(np.abs(at.joints.first).max()) * 100
-    raise NotImplementedError
+    """The fastest law with one acceleration for all drives that keeps the limits at its stations."""
+    length = case.path.length
+    at = sampled(case, np.linspace(0.0, length, INTERVALS + 1))
+    ends = [at.joints.first[k, :, None] for k in (0, -1)]
+    path = PiecewisePolynomial.CubicWithContinuousSecondDerivatives(at.s, at.joints.position.T, *ends)
+    limit, torque = case.limit("acceleration"), case.limit("torque")
+    room = np.full(at.a.shape[1], np.inf) if limit is None else limit
+    assert torque is not None
+    # A first guess, far too fast: what the curvature asks for at the highest speed.
+    fastest = case.limit("speed").min() / np.abs(at.joints.first).max()
+    one = float(np.abs(at.joints.second).max() * fastest**2)
+    for _ in range(_ROUNDS):
+        speed = _solved(case, path, at.s, np.minimum(one, room))
+        used = float((_torque(at, speed) / torque).max())
+        if abs(used - 1.0) <= _CLOSE or (used < 1.0 and (one >= room).all()):
+            return TimedPath(case.path, TimeLaw.constant_acceleration("Drake Toppra", at.s, speed))
+        one /= used
+    raise TimingFailed("Drake Toppra", {"rounds": _ROUNDS}, f"the torque is at {used:.4g} of its limit")
+
+
+def _solved(case: Case, path: PiecewisePolynomial, s: Array, acceleration: Array) -> Array:
+    """(k,) speed at the stations."""
+    problem = Toppra(path, _drives(acceleration.size), s)
+    speed = case.limit("speed")
+    problem.AddJointVelocityLimit(-speed, speed)
+    problem.AddJointAccelerationLimit(-acceleration, acceleration)
+    found = problem.SolvePathParameterization(0.0, 0.0)
+    if found is None:
+        raise TimingFailed("Drake Toppra", {"acceleration": acceleration}, "no solution")
+    times = np.array(found.get_segment_times())
+    rate = found.derivative()
+    at_knots = np.array([rate.value(t)[0, 0] for t in times])
+    if not np.allclose([found.value(t)[0, 0] for t in times], s, rtol=0.0, atol=1e-9 * s[-1]):
+        raise TimingFailed("Drake Toppra", {}, "its knots are not the stations")
+    at_knots[[0, -1]] = 0.0
+    return np.maximum(at_knots, 0.0)
+
+
+def _torque(at: Samples, speed: Array) -> Array:
+    """(2, k, m) magnitudes before and after each station."""
+    x = speed**2
+    u = np.diff(x) / (2 * np.diff(at.s))
+    sides = np.stack([np.append(u, u[-1]), np.append(u[0], u)])[..., None]
+    return np.abs(at.a * sides + at.b * x[:, None] + at.c)
+
+
+def _drives(count: int) -> MultibodyPlant:
+    """As many sliding bodies as there are drives: all that the limits of speed and acceleration need."""
+    plant = MultibodyPlant(0.0)
+    inertia = SpatialInertia.SolidSphereWithMass(1.0, 0.1)
+    for k in range(count):
+        body = plant.AddRigidBody(f"drive {k}", inertia)
+        plant.AddJoint(PrismaticJoint(f"drive {k}", plant.world_frame(), body.body_frame(), [1.0, 0.0, 0.0]))
+    plant.Finalize()
+    return plant

@@ -53,7 +53,9 @@ def _problem(case: Case, intervals: int | None) -> TOPPRA:
     robot, payload, rows = case.robot, case.payload, []
     acceleration, torque = case.limit("acceleration"), case.limit("torque")
     if acceleration is not None:
-        rows.append(_rows(lambda p, v, a: actuator_motion(robot, p, v, a, 0 * p).second, acceleration, len(robot.pose_names)))
+        rows.append(
+            _rows(lambda p, v, a: actuator_motion(robot, p, v, a, 0 * p).second, acceleration, len(robot.pose_names))
+        )
     if torque is not None:
         rows.append(_rows(lambda p, v, a: inverse_dynamics(robot, payload, p, v, a), torque, len(robot.pose_names)))
     return TOPPRA([DriveSpeed(case), *rows], path, gridpoints=grid)
