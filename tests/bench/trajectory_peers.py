@@ -187,11 +187,11 @@ HEADER = """\
 
 `python -m tests.bench.trajectory_peers` wrote this, with {found}, on {machine}.
 
-Every law gets the same half cycle, from rest to rest, the same limits and the same payload, and one verifier measures all
-of them densely between their knots, before any repair. "Solve" is from the problem to the law: the median of {repeats}
-repeats after a first run, or one repeat where the first run took more than {long:g} s. "At its limits" is the same motion
-at the pace, slower or faster, at which every limit holds and one is reached. Laws with steps of acceleration are measured
-without the jerk limit. The drives' limits are assumptions of this project.
+Every law gets the same half cycle, from rest to rest, the same limits and the same payload, and one verifier measures
+all of them densely between their knots, before any repair. "Solve" is from the problem to the law: the median of
+{repeats} repeats after a first run, or one repeat where the first run took more than {long:g} s. "At its limits" is the
+same motion at the pace, slower or faster, at which every limit holds and one is reached. Laws with steps of acceleration
+are measured without the jerk limit. The drives' limits are assumptions of this project.
 
 How each peer gets the problem, in the strongest form that its interface takes:
 

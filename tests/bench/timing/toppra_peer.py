@@ -17,7 +17,7 @@ from toppra.interpolator import AbstractGeometricPath
 from kinematics.dynamics import inverse_dynamics
 from kinematics.motion import actuator_motion
 from tests.bench.timing.cases import Case
-from trajectory import PoseSpline, TimedPath, TimeLaw, TimingFailed
+from trajectory import Path, PoseSpline, TimedPath, TimeLaw, TimingFailed
 from trajectory.path import Array
 
 WAYPOINTS = 501
@@ -25,8 +25,8 @@ Dynamics = Callable[[Array, Array, Array], Array]
 
 
 def defaults(case: Case) -> PoseSpline:
-    """With its defaults: about a hundred gridpoints of its choice, and `ParametrizeSpline`."""
-    problem = _problem(case, None)
+    """With its defaults: gridpoints of its choice, and `ParametrizeSpline`."""
+    problem = problem_of(case, spline(case))
     found = problem.compute_trajectory(0.0, 0.0)
     if found is None:
         raise TimingFailed("toppra", {}, problem.problem_data.return_code.name)
@@ -37,7 +37,11 @@ def defaults(case: Case) -> PoseSpline:
 
 def constant_acceleration(case: Case, intervals: int | None = None) -> TimedPath:
     """By `ParametrizeConstAccel`, on the exact path; its own gridpoints, or so many equal intervals."""
-    problem = _problem(case, intervals)
+    return solved(case, problem_of(case, spline(case), intervals))
+
+
+def solved(case: Case, problem: TOPPRA) -> TimedPath:
+    """The path by toppra's speeds at its gridpoints, s'' constant in between."""
     _, speed, _ = problem.compute_parameterization(0.0, 0.0)
     if speed is None:
         raise TimingFailed("toppra", {}, problem.problem_data.return_code.name)
@@ -46,9 +50,36 @@ def constant_acceleration(case: Case, intervals: int | None = None) -> TimedPath
     return TimedPath(case.path, law)
 
 
-def _problem(case: Case, intervals: int | None) -> TOPPRA:
+def spline(case: Case) -> SplineInterpolator:
+    """toppra's own path: through poses at equal arc lengths, by the share of the length."""
     shares = np.linspace(0.0, 1.0, WAYPOINTS)
-    path = SplineInterpolator(shares, case.path.evaluate(shares * case.path.length, 0)[0])
+    return SplineInterpolator(shares, case.path.evaluate(shares * case.path.length, 0)[0])
+
+
+class ExactPath(AbstractGeometricPath):
+    """Our path with its own derivatives, by the share of the length."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    @property
+    def dof(self) -> int:
+        """Coordinates of the pose."""
+        return len(self.path.pose_names)
+
+    @property
+    def path_interval(self) -> Array:
+        """All of it."""
+        return np.array([0.0, 1.0])
+
+    def __call__(self, path_positions: Array, order: int = 0) -> Array:
+        """The pose or a derivative."""
+        length = self.path.length
+        return self.path.evaluate(np.asarray(path_positions) * length, order)[order] * length**order
+
+
+def problem_of(case: Case, path: AbstractGeometricPath, intervals: int | None = None) -> TOPPRA:
+    """The case for toppra; without a number of intervals, on gridpoints of its choice."""
     grid = None if intervals is None else np.linspace(0.0, 1.0, intervals + 1)
     robot, payload, rows = case.robot, case.payload, []
     acceleration, torque = case.limit("acceleration"), case.limit("torque")
@@ -57,7 +88,7 @@ def _problem(case: Case, intervals: int | None) -> TOPPRA:
             _rows(lambda p, v, a: actuator_motion(robot, p, v, a, 0 * p).second, acceleration, len(robot.pose_names))
         )
     if torque is not None:
-        rows.append(_rows(lambda p, v, a: inverse_dynamics(robot, payload, p, v, a), torque, len(robot.pose_names)))
+        rows.append(_rows(lambda p, v, a: inverse_dynamics(robot, payload, p, v, a), torque, path.dof))
     return TOPPRA([DriveSpeed(case), *rows], path, gridpoints=grid)
 
 
