@@ -190,8 +190,8 @@ HEADER = """\
 Every law gets the same half cycle, from rest to rest, the same limits and the same payload, and one verifier measures
 all of them densely between their knots, before any repair. "Solve" is from the problem to the law: the median of
 {repeats} repeats after a first run, or one repeat where the first run took more than {long:g} s. "At its limits" is the
-same motion at the pace, slower or faster, at which every limit holds and one is reached. Laws with steps of acceleration
-are measured without the jerk limit. The drives' limits are assumptions of this project.
+same motion at the pace, slower or faster, at which every limit holds and one is reached. Laws whose acceleration steps
+are measured without the jerk limit. The limits of the drives are assumptions of this project.
 
 How each peer gets the problem, in the strongest form that its interface takes:
 
@@ -200,8 +200,9 @@ How each peer gets the problem, in the strongest form that its interface takes:
   N = 2000. By default its trajectory is a cubic spline in time, which is verified as it is; a law of
   `ParametrizeConstAccel` is travelled on the exact path.
 - **Drake** computes the torque of open trees only: the limit of a closed loop's torque cannot be given to it. It gets
-  the drives' path, their speed, and one acceleration for all that stands in for the torque: the largest whose law keeps
-  the torque, found by solving several times, all of them counted. 1000 equal intervals.
+  the drives' path, their speed, and constant accelerations that stand in for the torque: the largest whose law keeps
+  the torque, the same for all drives or in proportion to their largest q', whichever is faster; found by solving
+  several times, all of them counted. 1000 equal intervals.
 - **copp-py** gets exact derivatives, exact torque rows, and the problem without units; TOPP3 is linearised about its
   own last answer until the time stands. Between its stations its s'' is taken linear in time.
 - **ruckig** gets s as its one axis, with the best constant speed, acceleration and jerk for which each limit holds for

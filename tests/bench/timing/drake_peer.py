@@ -1,7 +1,8 @@
 """Drake's Toppra, which knows a robot only as an open tree: a closed loop's torque limit cannot be given to it.
 
-What it can be given is the drives' path q(s), their speeds, and one acceleration for all of them, which stands in for
-the torque: the largest whose law keeps the torque at its stations, found by solving again.
+What it can be given is the drives' path q(s), their speeds, and constant accelerations that stand in for the torque:
+the largest whose law keeps the torque at its stations, found by solving again; the same for all drives, or in proportion
+to their largest q', whichever is faster.
 """
 
 from __future__ import annotations
@@ -23,23 +24,31 @@ _CLOSE = 1e-3  # relative, of the torque
 
 
 def toppra(case: Case) -> TimedPath:
-    """The fastest law with one acceleration for all drives that keeps the limits at its stations."""
-    length = case.path.length
-    at = sampled(case, np.linspace(0.0, length, INTERVALS + 1))
+    """The faster of the two."""
+    at = sampled(case, np.linspace(0.0, case.path.length, INTERVALS + 1))
     ends = [at.joints.first[k, :, None] for k in (0, -1)]
     path = PiecewisePolynomial.CubicWithContinuousSecondDerivatives(at.s, at.joints.position.T, *ends)
-    limit, torque = case.limit("acceleration"), case.limit("torque")
-    room = np.full(at.a.shape[1], np.inf) if limit is None else limit
+    shape = np.abs(at.joints.first).max(axis=0)
+    shape /= shape.max()
+    laws = [_fastest(case, path, at, each) for each in (np.ones_like(shape), shape)]
+    return min(laws, key=lambda law: law.duration)
+
+
+def _fastest(case: Case, path: PiecewisePolynomial, at: Samples, shape: Array) -> TimedPath:
+    """With the largest accelerations in this proportion."""
+    limit, torque, speed = (case.limit(name) for name in ("acceleration", "torque", "speed"))
     assert torque is not None
-    # A first guess, far too fast: what the curvature asks for at the highest speed.
-    fastest = case.limit("speed").min() / np.abs(at.joints.first).max()
-    one = float(np.abs(at.joints.second).max() * fastest**2)
+    assert speed is not None
+    room = np.full(shape.size, np.inf) if limit is None else limit
+    # A first guess: what the curvature asks for at a third of the highest speed.
+    fastest = (speed / np.abs(at.joints.first).max(axis=0)).min()
+    each = shape * float(np.abs(at.joints.second).max() * (fastest / 3) ** 2)
     for _ in range(_ROUNDS):
-        speed = _solved(case, path, at.s, np.minimum(one, room))
-        used = float((_torque(at, speed) / torque).max())
-        if abs(used - 1.0) <= _CLOSE or (used < 1.0 and (one >= room).all()):
-            return TimedPath(case.path, TimeLaw.constant_acceleration("Drake Toppra", at.s, speed))
-        one /= used
+        found = _solved(case, path, at.s, np.minimum(each, room))
+        used = float((_torque(at, found) / torque).max())
+        if abs(used - 1.0) <= _CLOSE or (used < 1.0 and (each >= room).all()):
+            return TimedPath(case.path, TimeLaw.constant_acceleration("Drake Toppra", at.s, found))
+        each = each / used
     raise TimingFailed("Drake Toppra", {"rounds": _ROUNDS}, f"the torque is at {used:.4g} of its limit")
 
 
