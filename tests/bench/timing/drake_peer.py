@@ -1,8 +1,8 @@
 """Drake's Toppra, which knows a robot only as an open tree: a closed loop's torque limit cannot be given to it.
 
 What it can be given is the drives' path q(s), their speeds, and constant accelerations that stand in for the torque:
-the largest whose law keeps the torque at its stations, found by solving again; the same for all drives, or in proportion
-to their largest q', whichever is faster.
+the largest whose law keeps the torque at its stations, found by solving again; the same for all drives, or in
+proportion to their largest q', whichever is faster.
 """
 
 from __future__ import annotations
