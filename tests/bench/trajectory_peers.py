@@ -204,7 +204,7 @@ How each peer gets the problem, in the strongest form that its interface takes:
   the torque, the same for all drives or in proportion to their largest q', whichever is faster; found by solving
   several times, all of them counted. 1000 equal intervals.
 - **copp-py** gets exact derivatives, exact torque rows, and the problem without units; TOPP3 is linearised about its
-  own last answer until the time stands. Between its stations its s'' is taken linear in time.
+  own last answer until the time stands. Its s'' between stations is its own interpolation.
 - **ruckig** gets s as its one axis, with the best constant speed, acceleration and jerk for which each limit holds for
   every s; the search for them is counted.
 """

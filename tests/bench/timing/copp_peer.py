@@ -17,6 +17,7 @@ from trajectory.path import Array
 
 STATIONS = 1001
 _ROUNDS = 20
+_PARTS = 4  # of each interval
 _CLOSE = 1e-5  # relative: the time stands
 
 
@@ -39,9 +40,24 @@ def topp3(case: Case, stations: int = STATIONS, at_rest: int = 1) -> TimedPath:
         )
         duration, times = copp.interpolation.s_to_t_topp3(problem.s, found)
         if abs(last - duration) < _CLOSE * duration:
-            return smooth_law(case, "copp TOPP3", times * problem.unit, found.b)
+            times, u = _within(problem.s, found, times)
+            unit = problem.unit
+            return smooth_law(case, "copp TOPP3", times * unit, u * case.path.length / unit**2)
         x, u, last = found.a, found.b, duration
     raise TimingFailed("copp TOPP3", {"stations": stations}, f"the time does not stand after {_ROUNDS} rounds")
+
+
+def _within(s: Array, found: copp.interpolation.Profile3rd, times: Array) -> tuple[Array, Array]:
+    """Its own interpolation: s'' is linear in s between stations, and in time next to the ends, where it rests."""
+    first, last = found.num_stationary
+    inner = slice(first, times.size - last)
+    steps = np.diff(times[inner])
+    parts = times[inner][:-1, None] + steps[:, None] * np.arange(_PARTS) / _PARTS
+    dense = np.concatenate([times[:first], parts.ravel(), times[times.size - last - 1 :]])
+    at = copp.interpolation.t_to_s_topp3_samples(s, found, times, dense)
+    u = np.interp(at, s, found.b)
+    u[:first], u[u.size - last :] = found.b[:first], found.b[times.size - last :]
+    return dense, u
 
 
 class _Problem:

@@ -6,7 +6,7 @@ import math
 import statistics
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from kinematics import LinkwrightError
 from tests.bench.timing.cases import Case
@@ -57,8 +57,8 @@ def measured(case: Case, law: str, jerk: bool, solve: Callable[[], TimedMotion])
     try:
         held, after = at_the_limit(case, motion, limits)
     except LimitsExceeded as error:
-        return Row(**{**vars(row), "reason": f"no scaling of time mends {', '.join(error.failures)}"})
-    return Row(**{**vars(row), "held": held.duration, "worst_held": max(after.peak_over_limit.values())})
+        return replace(row, reason=f"no scaling of time mends {', '.join(error.failures)}")
+    return replace(row, held=held.duration, worst_held=max(after.peak_over_limit.values()))
 
 
 def at_the_limit(case: Case, motion: TimedMotion, limits: Limits) -> tuple[TimedMotion, Verification]:

@@ -9,8 +9,10 @@ import numpy as np
 from kinematics.dynamics import inverse_dynamics
 from kinematics.motion import JointMotion, actuator_motion
 from tests.bench.timing.cases import Case
-from trajectory import TimedPath, TimeLaw
+from trajectory import TimedPath, TimeLaw, TimingFailed
 from trajectory.path import Array
+
+_UNFAIR = 1e-3  # relative: a peer's law that had to be changed so much is not its own
 
 
 class Samples(NamedTuple):
@@ -36,8 +38,10 @@ def sampled(case: Case, s: Array) -> Samples:
 def smooth_law(case: Case, name: str, times: Array, acceleration: Array) -> TimedPath:
     """The path by s'' at times (k,), linear in between: so s''' is constant there, and nothing jumps.
 
-    A peer's own s' and s between its stations are another interpolation of the same numbers: the law is brought to its
-    end, at rest, by the least change of s'', and of the time.
+    So a peer's s' and s are integrated anew; what is missing at the end, to be at rest there, is spread over s''.
+
+    Raises:
+        TimingFailed: more than rounding and interpolation is missing.
     """
     length, acceleration = case.path.length, acceleration.copy()
     acceleration[[0, -1]] = 0.0
@@ -46,12 +50,18 @@ def smooth_law(case: Case, name: str, times: Array, acceleration: Array) -> Time
     share[:-1] += steps / 2
     share[1:] += steps / 2
     weight = np.where((times > 0) & (times < times[-1]), np.minimum(times, times[-1] - times), 0.0)
-    acceleration -= weight * (share @ acceleration) / (share @ weight)
+    correction = (share @ acceleration) / (share @ weight) * weight
+    acceleration -= correction
     jerk = np.diff(acceleration) / steps
     speed = np.concatenate([[0.0], np.cumsum(steps * (acceleration[1:] + acceleration[:-1]) / 2)])
     ways = steps * (speed[:-1] + steps * (acceleration[:-1] / 2 + steps * jerk / 6))
     position = np.concatenate([[0.0], np.cumsum(ways)])
     scale = length / position[-1]
+    changed = max(abs(scale - 1.0), float(np.abs(correction).max() / np.abs(acceleration).max()))
+    if changed > _UNFAIR:
+        raise TimingFailed(
+            name, {"stations": times.size}, f"its numbers had to be changed by {changed:.2g} to end at rest"
+        )
     position, speed, acceleration, jerk = (scale * v for v in (position, speed, acceleration, jerk))
     position[-1], speed[-1] = length, 0.0
     return TimedPath(case.path, TimeLaw(name, times, position, speed, acceleration[:-1], jerk))
