@@ -7,43 +7,23 @@ twists (v of O_E, omega) and wrenches (force, moment about O_E) are expressed in
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import ClassVar
 
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import Bodies, InertiaRecord, Particle, Rotor
+from kinematics.bodies import Bodies, Particle, Rotor
 from kinematics.errors import InvalidShape
 from kinematics.geometry import TURN
 from kinematics.gough_stewart_forward import ForwardSolution, assembly_modes, matched_pose
-from kinematics.gough_stewart_geometry import GoughStewartGeometry, GoughStewartRanges
+from kinematics.gough_stewart_geometry import GoughStewartGeometry, GoughStewartInertia, GoughStewartRanges
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Array
 from kinematics.ranges import PassiveJoint
 from kinematics.six_legs import SixLegs
 
 _SCREW = ("x", "y", "z", "about x", "about y", "about z")
-
-
-@dataclass(frozen=True)
-class GoughStewartInertia(InertiaRecord):
-    """Electric cylinders of a laboratory hexapod: an assumption of this project, not a datasheet. SI units.
-
-    Attributes:
-        screw_lead: of each cylinder [m/turn].
-        drive: inertia of motor and screw about the screw's axis.
-        rod_mass, rod_length: the moving end of each leg, a thin uniform rod from B_i towards A_i; of length 0, a
-            particle at B_i. The other end stays near A_i, and its turning is left out.
-        platform_mass: in six equal particles at the B_i; the payload is a particle at the tool point.
-    """
-
-    screw_lead: float = 0.010
-    drive: float = 1.2e-4
-    rod_mass: float = 0.8
-    rod_length: float = 0.0
-    platform_mass: float = 12.0
 
 
 class GoughStewart(SixLegs):

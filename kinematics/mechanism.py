@@ -50,6 +50,7 @@ class Mechanism(Definition):
         self.inertia = inertia if inertia is not None else self.Inertia()
         if not isinstance(self.inertia, self.Inertia):
             raise InvalidValue(f"{type(self).__name__} inertia", inertia, f"a {self.Inertia.__name__}")
+        self.inertia.check(len(self.joint_names))
         self.ranges = ranges if ranges is not None else self.Ranges()
         if not isinstance(self.ranges, self.Ranges):
             raise InvalidValue(f"{type(self).__name__} ranges", ranges, f"a {self.Ranges.__name__}")

@@ -82,6 +82,7 @@ def flipped(certificate: Certificate) -> Certificate:
         (lambda c: replace(c, boxes=c.boxes + 1), "boxes"),
         (lambda c: replace(c, at_least=0.39), "bound"),
     ],
+    ids=lambda value: value if isinstance(value, str) else "",
 )
 def test_a_forged_certificate_fails_though_its_digest_agrees(
     small_run: SmallRun, outcome: Outcome, tmp_path: Path, change: Callable[[Certificate], Certificate], says: str
