@@ -30,6 +30,7 @@ types: $(READY)
 	$(BIN)/mypy
 
 bench: $(READY)  ## speed against a peer in the same run; rewrites the figures in the README
+	-$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
 	$(BIN)/python -m tests.bench
 
 clean:  ## drop the environment and everything made

@@ -265,6 +265,13 @@ class Mechanism(Definition):
     def _joints(self, joints: Array) -> Array:
         return checked(joints, "joints", self.joint_names)
 
+    def _one(self, joints: Array) -> Array:
+        """(m,), for `assembly_modes`."""
+        joints = self._joints(joints)
+        if joints.ndim != 1:
+            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        return joints
+
     @staticmethod
     def _together(first: Array, second: Array) -> tuple[Array, Array]:
         try:

@@ -19,7 +19,6 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from kinematics.bodies import Bodies, Particle, Rod, Rotor
-from kinematics.errors import InvalidShape
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array
@@ -247,9 +246,7 @@ class Redundant3T1R(RodLevel):
         The paper's four candidates close arms 1, 2 and 5 (and 3, 4 only at the right distance from B_1): mostly one of
         them closes all six, on the planes y_b1 = 0 and z = 0 two of B_1 may.
         """
-        joints = self._joints(joints)
-        if joints.ndim != 1:
-            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        joints = self._one(joints)
         poses, errors, ahead = self._candidates(joints)
         closing = np.flatnonzero(errors <= tolerance)
         return poses[closing[np.argsort(-ahead[closing], kind="stable")]]

@@ -220,7 +220,7 @@ def trajectory(
     out: OutOption = None,
     prototype: PrototypeOption = False,
     law: Annotated[
-        str | None, typer.Option("--law", help="Timing law, in place of the study's: jerk or toppra.")
+        str | None, typer.Option("--law", help="Timing law, in place of the study's: jerk, toppra or free.")
     ] = None,
     formats: FormatOption = None,
 ) -> None:

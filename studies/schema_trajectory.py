@@ -43,7 +43,7 @@ class Limits(Model):
 File = Literal["csv", "ros2", "cia402", "zaber", "xps", "pmac"]
 FILES = get_args(File)
 Increments = Annotated[int, Field(gt=0)]
-LAWS = ("jerk", "toppra")
+LAWS = ("jerk", "toppra", "free")
 
 
 class Approach(Model):
@@ -71,7 +71,7 @@ class Drive(Model):
 class Trajectory(Model):
     """How the cycle is timed, and how its set-points are sampled."""
 
-    law: Annotated[Literal["jerk", "toppra"], Key("one of", choices=LAWS)] = "jerk"
+    law: Annotated[Literal["jerk", "toppra", "free"], Key("one of", choices=LAWS)] = "jerk"
     """toppra keeps no jerk limit."""
     grid: Annotated[int, Field(ge=1000, le=1_000_000), Key("a whole number from 1000 to 1000000")] = 2000
     """Points along the path."""

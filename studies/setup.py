@@ -151,6 +151,10 @@ def timing_of(asked: schema_trajectory.Trajectory) -> tuple[Timing, tuple[str, .
         from trajectory.toppra_law import time_optimal
 
         return partial(time_optimal, intervals=asked.grid), ("jerk",)
+    if asked.law == "free":
+        from trajectory.free_law import free_motion
+
+        return free_motion, ()
     from trajectory.jerk_law import jerk_limited
 
     return jerk_limited, ()

@@ -11,12 +11,12 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from tests.bench import certificates
+from tests.bench import certificates, trajectory_peers
 from tests.bench.page import ROOT, write_between
 
 
 def main() -> None:
-    """Benchmarks, study, certificates."""
+    """Benchmarks, study, certificates, timing laws."""
     with tempfile.TemporaryDirectory() as folder:
         tables = {"bench": _bench_table(_benchmarks(Path(folder) / "bench.json"))}
         tables["run"] = _run_table(_study(Path(folder)))
@@ -25,6 +25,7 @@ def main() -> None:
     for name, table in tables.items():
         write_between(ROOT / "README.md", name, table)
     certificates.main()
+    trajectory_peers.main()
 
 
 def _benchmarks(file: Path) -> list[dict[str, Any]]:

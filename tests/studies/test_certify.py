@@ -213,7 +213,7 @@ def test_certify_exits_1_with_margin_and_pose(
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (("--margin", "J_X"), "--margin: found J_X; expected one of reach, joint_travel, fvi, J_q"),
+        (("--margin", "J_X"), f"--margin: found J_X; expected one of {', '.join(Heli4.margins)}"),
         (("--at-least", "1"), "--at-least: found 1.0; expected --margin"),
         (("--margin", "fvi", "--at-least", "nan"), "--at-least: found nan; expected a finite number"),
     ],
