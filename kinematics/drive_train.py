@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from kinematics.errors import InvalidValue
+from kinematics.geometry import frozen, numbers_of
 
 PerActuator = float | tuple[float, ...]
 REST = 1e-9  # [rad/s or m/s], above what rounding leaves of a speed of 0
@@ -38,10 +39,10 @@ class DriveTrain:
     def __post_init__(self) -> None:
         for f in fields(self):
             value = getattr(self, f.name)
-            numbers = np.asarray(value)
-            if numbers.dtype.kind not in "iuf" or not np.all(np.isfinite(numbers)) or np.any(numbers < 0.0):
+            numbers = numbers_of(value)
+            if numbers is None or numbers.ndim > 1 or not np.isfinite(numbers).all() or np.any(numbers < 0.0):
                 raise InvalidValue(f"DriveTrain {f.name}", value, "finite and >= 0")
-            object.__setattr__(self, f.name, tuple(numbers.tolist()) if numbers.ndim else float(numbers))
+            object.__setattr__(self, f.name, frozen(numbers))
         if np.any(np.asarray(self.gear_ratio) == 0.0):
             raise InvalidValue("DriveTrain gear_ratio", self.gear_ratio, "> 0")
 

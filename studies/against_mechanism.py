@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from studies.errors import KeyPath
-from studies.hardware import hardware_faults, hardware_tables
+from studies.hardware import hardware_faults, hardware_tables, subtable
 from studies.mechanisms import GeometryField, geometry_fields, shape
 from studies.schema import (
     REGION_KINDS,
@@ -70,15 +70,15 @@ def _trajectory_table(pose_names: Sequence[str]) -> Table:
 def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:
     """The paths of `data` (in SI) at odds with `mechanism`; what the models reject is left to them."""
     fields = geometry_fields(mechanism)
-    for name, value in _table(data, "geometry").items():
+    for name, value in subtable(data, "geometry").items():
         field = fields[name]
         if shape(value) != field.shape or not all(field.allows(n, n) for n in _numbers(value)):
             yield ("geometry", name)
     yield from hardware_faults(data, mechanism)
     if isinstance(data.get("region"), dict):
         yield from _region_faults(data["region"], mechanism)
-    optimise = _table(data, "optimise")
-    for name, bounds in _table(optimise, "variables").items():
+    optimise = subtable(data, "optimise")
+    for name, bounds in subtable(optimise, "variables").items():
         field = fields[name]
         pairs = bounds if field.shape and isinstance(bounds, tuple) else (bounds,)
         ends = [_numbers(pair) for pair in pairs]
@@ -89,7 +89,7 @@ def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyP
     for i, names in _rows(optimise, "sums", "fields"):
         if isinstance(names, tuple) and not set(map(str, names)) <= set(_lengths(fields)):
             yield ("optimise", "sums", i, "fields")
-    certified = _table(data, "certify").get("margins")
+    certified = subtable(data, "certify").get("margins")
     if isinstance(certified, tuple) and not set(map(str, certified)) <= set(mechanism.margins):
         yield ("certify", "margins")
     for i, margin in _rows(data, "requirement", "margin"):
@@ -156,11 +156,6 @@ def _condition(field: GeometryField) -> str:
 
 def _lengths(fields: Mapping[str, GeometryField]) -> tuple[str, ...]:
     return tuple(name for name, field in fields.items() if field.dimension == Dimension.LENGTH)
-
-
-def _table(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    table = data.get(name)
-    return table if isinstance(table, dict) else {}
 
 
 def _rows(data: Mapping[str, Any], name: str, key: str) -> Iterator[tuple[int, Any]]:

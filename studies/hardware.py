@@ -63,12 +63,12 @@ def _key(field: Field[Any], dimensions: Mapping[str, str], more: str = "") -> Ke
 
 def hardware_faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:
     """The paths of `data` (in SI) that the mechanism's records refuse, each value by itself."""
-    count, inertia = len(mechanism.joint_names), _table(data, "inertia")
+    count, inertia = len(mechanism.joint_names), subtable(data, "inertia")
     masses = {name: value for name, value in inertia.items() if name != "drive_train"}
     of_records: list[tuple[KeyPath, type[Any], Mapping[str, Any]]] = [
-        (("ranges",), mechanism.Ranges, _table(data, "ranges")),
+        (("ranges",), mechanism.Ranges, subtable(data, "ranges")),
         (("inertia",), mechanism.Inertia, masses),
-        (("inertia", "drive_train"), DriveTrain, _table(inertia, "drive_train")),
+        (("inertia", "drive_train"), DriveTrain, subtable(inertia, "drive_train")),
     ]
     for path, record, values in of_records:
         for name, value in values.items():
@@ -78,6 +78,7 @@ def hardware_faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iter
                 yield (*path, name)
 
 
-def _table(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+def subtable(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """A table of `data`; empty where there is none, or something else."""
     table = data.get(name)
     return table if isinstance(table, dict) else {}

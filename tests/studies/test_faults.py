@@ -58,6 +58,7 @@ FAULTS = {
     "more than the rod": ("rod_middle = 0.25", "rod_middle = 1.5", "inertia.rod_middle", "a share from 0 to 1"),
     "no gear": ("gear_ratio = 5", "gear_ratio = 0", "inertia.drive_train.gear_ratio", "found 0; expected a number > 0"),
     "three drives": ("[1, 2, 3, 4]", "[1, 2, 3]", "inertia.drive_train.coulomb", ">= 0, or one a joint (N m, or N)"),
+    "ragged drives": ("[1, 2, 3, 4]", "[[1], [2, 3]]", "inertia.drive_train.coulomb", "found [[1], [2, 3]]; expected"),
     "drive key": ("gear_ratio", "gear_rato", "inertia.drive_train.gear_rato", "did you mean gear_ratio?"),
     "three joints": ("[0, 210], [10, 220]]", "[0, 210]]", "ranges.joints_deg", "once or for each of 4 joints (deg)"),
     "joint upside down": ("[10, 220]]", "[220, 10]]", "ranges.joints_deg", "expected finite low < high"),
