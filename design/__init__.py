@@ -3,7 +3,8 @@
 from design.best_bound import BestBound, best_bound
 from design.certificate import Certificate, certify
 from design.certificate_file import certificate_bytes, load_certificate, save_certificate
-from design.certified import CertifiedRegion, certified_cells, certified_cylinder
+from design.certified import CertifiedRegion, certified_cylinder
+from design.certified_cells import certified_cells
 from design.errors import (
     BrokenCertificate,
     InvalidRegion,

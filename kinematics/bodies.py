@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import casadi as ca
 import numpy as np
 
 from kinematics.drive_train import DriveTrain
 from kinematics.errors import InvalidValue
+from kinematics.geometry import frozen, numbers_of
 
 UNIFORM = 2 / 3  # the `rod_middle` of a thin uniform rod: with 1/6 at each end, its mass, centre and inertia
 
 
 @dataclass(frozen=True)
 class InertiaRecord:
-    """Base of every mechanism's `Inertia`: numbers, or tuples of them, that are finite and not negative.
+    """Base of every mechanism's `Inertia`: numbers, or tuples of as many as the default has, finite and not negative.
 
     Attributes:
         rod_middle: share of each rod's mass that sits at its middle, the rest half at each end. 0 splits it between
@@ -28,6 +30,7 @@ class InertiaRecord:
         InvalidValue: naming the field.
     """
 
+    dimensions: ClassVar[Mapping[str, str]] = {}  # as in a geometry, of fields that a file may give in mm
     rod_middle: float = field(default=0.0, kw_only=True)
     drive_train: DriveTrain = field(default=DriveTrain(), kw_only=True)
 
@@ -37,10 +40,22 @@ class InertiaRecord:
             if f.name == "drive_train":
                 if not isinstance(value, DriveTrain):
                     raise InvalidValue(f"{type(self).__name__} drive_train", value, "a DriveTrain")
-            elif not np.all(np.isfinite(value)) or np.any(np.asarray(value) < 0.0):
-                raise InvalidValue(f"{type(self).__name__} {f.name}", value, "finite and >= 0")
+                continue
+            array, shape = numbers_of(value), np.shape(f.default)  # type: ignore[arg-type]
+            if array is None or array.shape != shape or not np.isfinite(array).all() or np.any(array < 0.0):
+                count = f"{shape[0]} numbers, " if shape else ""
+                raise InvalidValue(f"{type(self).__name__} {f.name}", value, f"{count}finite and >= 0")
+            object.__setattr__(self, f.name, frozen(array))
         if self.rod_middle > 1.0:
             raise InvalidValue(f"{type(self).__name__} rod_middle", self.rod_middle, "a share, at most 1")
+
+    def check(self, count: int) -> None:
+        """Check that every drive's data suits `count` actuators.
+
+        Raises:
+            InvalidValue: naming the field.
+        """
+        self.drive_train.check(count)
 
 
 class Particle(NamedTuple):

@@ -11,13 +11,12 @@ import casadi as ca
 import numpy as np
 
 from kinematics.bodies import Bodies, Particle
-from kinematics.errors import InvalidShape
 from kinematics.geometry import GeometryRecord, angle, length
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array, Build
 from kinematics.model import Model
-from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, columns, radial_directions
+from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, columns, radial_directions, upright_limbs
 
 _DEG = math.pi / 180.0
 
@@ -78,7 +77,7 @@ class Delta(RotaryLimbs):
     def limbs(g: SimpleNamespace) -> Limbs:
         """Arms in vertical planes through e_z."""
         radial, _ = radial_directions(g.azimuths)
-        return Limbs(g.base_radius * radial, columns(ca.SX([0, 0, 1]), 3), radial, g.arm_length, g.rod_length)
+        return upright_limbs(g.base_radius * radial, radial, g)
 
     @staticmethod
     def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
@@ -99,9 +98,7 @@ class Delta(RotaryLimbs):
     @classmethod
     def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
         """Base, arms, rod pairs by their midlines, plate."""
-        around = [0, 1, 2, 0]
-        lines = {"base": cls.limbs(g).actuators[:, around], "platform": cls.platform_points(pose, g)[:, around]}
-        return lines | cls.limb_lines(pose, joints, g)
+        return cls.limb_lines(pose, joints, g) | {"platform": cls.platform_points(pose, g)[:, [0, 1, 2, 0]]}
 
     # The forward model: three spheres of radius l, of 2nd degree (8.6.4.1).
 
@@ -132,9 +129,7 @@ class Delta(RotaryLimbs):
 
         None where the spheres' centres lie on one line, as there is no isolated pose then.
         """
-        joints = self._joints(joints)
-        if joints.ndim != 1:
-            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        joints = self._one(joints)
         both = self._both(joints)
         both = both[np.isfinite(both).all(axis=-1)]
         return both[:1] if len(both) and np.array_equal(both[0], both[1]) else both

@@ -45,6 +45,15 @@ class DriveTrain:
         if np.any(np.asarray(self.gear_ratio) == 0.0):
             raise InvalidValue("DriveTrain gear_ratio", self.gear_ratio, "> 0")
 
+    def check(self, count: int) -> None:
+        """Check that every field suits `count` actuators.
+
+        Raises:
+            InvalidValue: naming the field.
+        """
+        for f in fields(self):
+            self.of_actuators(f.name, count)
+
     def friction(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(..., m) actuator speeds [rad/s or m/s] -> Coulomb and viscous friction, (..., m) each [N m or N]."""
         coulomb, viscous = (self.of_actuators(name, speed.shape[-1]) for name in ("coulomb", "viscous"))

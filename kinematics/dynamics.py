@@ -72,7 +72,7 @@ def _named(pose: Array, velocity: Array, acceleration: Array) -> list[tuple[str,
 def _build(robot: Mechanism, model: Model, payload: float) -> Build:
     velocity, acceleration = (ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration"))
     _, speed = derivatives_along(model.drives @ model.inverse, model.pose, [velocity])
-    torque = torques(robot, payload, velocity, acceleration) + _friction(robot, speed)
+    torque = torques(robot, payload, velocity, acceleration) + friction(robot, speed)
     return [model.pose, velocity, acceleration], [torque]
 
 
@@ -84,7 +84,8 @@ def torques(robot: Mechanism, payload: float, velocity: ca.SX, acceleration: ca.
     return transposed @ _torques(robot, model, payload, rates, joint_motion) / det
 
 
-def _friction(robot: Mechanism, speed: ca.SX) -> ca.SX:
+def friction(robot: Mechanism, speed: ca.SX) -> ca.SX:
+    """(m,) of the actuators at their speeds (m,), as `DriveTrain.friction`."""
     coulomb, viscous = (
         ca.DM(robot.inertia.drive_train.of_actuators(name, speed.shape[0])) for name in ("coulomb", "viscous")
     )

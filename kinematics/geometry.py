@@ -60,7 +60,7 @@ class GeometryRecord:
         for f in fields(self):
             given, wanted = getattr(self, f.name), _shape(f)
             words = " rows of ".join(str(k) for k in wanted) + " numbers" if wanted else "a number"
-            array = _numbers(given)
+            array = numbers_of(given)
             if array is None or array.shape != wanted:
                 raise self._invalid(f.name, given, words)
             if not np.isfinite(array).all():
@@ -74,7 +74,7 @@ class GeometryRecord:
                 )
             if f.metadata["dimension"] == "length_per_turn" and np.any(array == 0.0):
                 raise self._invalid(f.name, given, "a pitch other than 0 m/turn")
-            object.__setattr__(self, f.name, _frozen(array))
+            object.__setattr__(self, f.name, frozen(array))
 
     @classmethod
     def _invalid(cls, name: str, found: object, expected: str) -> InvalidGeometry:
@@ -102,7 +102,7 @@ class GeometryRecord:
         start = 0
         for f in fields(cls):
             size = math.prod(_shape(f))
-            items[f.name] = _frozen(np.asarray(values[start : start + size], dtype=float).reshape(_shape(f)))
+            items[f.name] = frozen(np.asarray(values[start : start + size], dtype=float).reshape(_shape(f)))
             start += size
         return cls(**items)
 
@@ -129,7 +129,7 @@ def _shape(f: Field[Any]) -> tuple[int, ...]:
     return np.shape(f.default)  # type: ignore[arg-type]
 
 
-def _numbers(given: object) -> Vector | None:
+def numbers_of(given: object) -> Vector | None:
     """As an array of floats; None where any of it is not a number, such as text that only looks like one."""
     try:
         array = np.asarray(given)
@@ -138,6 +138,6 @@ def _numbers(given: object) -> Vector | None:
     return array.astype(float) if array.dtype.kind in "iuf" else None
 
 
-def _frozen(array: Vector) -> Any:
+def frozen(array: Vector) -> Any:
     """A number, a tuple, or a tuple of tuples: hashable."""
-    return tuple(_frozen(row) for row in array) if array.ndim else float(array)
+    return tuple(frozen(row) for row in array) if array.ndim else float(array)

@@ -7,45 +7,26 @@ twists (v of O_E, omega) and wrenches (force, moment about O_E) are expressed in
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import ClassVar
 
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import Bodies, InertiaRecord, Particle, Rotor
+from kinematics.bodies import Bodies, Particle, Rotor
 from kinematics.errors import InvalidShape
 from kinematics.geometry import TURN
-from kinematics.gough_stewart_forward import ForwardSolution, assembly_modes, matched_pose, solve_forward
-from kinematics.gough_stewart_geometry import GoughStewartGeometry, GoughStewartRanges
+from kinematics.gough_stewart_forward import ForwardSolution, assembly_modes, matched_pose
+from kinematics.gough_stewart_geometry import GoughStewartGeometry, GoughStewartInertia, GoughStewartRanges
 from kinematics.indices import FviBounds
-from kinematics.mechanism import Array, Mechanism
+from kinematics.mechanism import Array
 from kinematics.ranges import PassiveJoint
+from kinematics.six_legs import SixLegs
 
 _SCREW = ("x", "y", "z", "about x", "about y", "about z")
 
 
-@dataclass(frozen=True)
-class GoughStewartInertia(InertiaRecord):
-    """Electric cylinders of a laboratory hexapod: an assumption of this project, not a datasheet. SI units.
-
-    Attributes:
-        screw_lead: of each cylinder [m/turn].
-        drive: inertia of motor and screw about the screw's axis.
-        rod_mass, rod_length: the moving end of each leg, a thin uniform rod from B_i towards A_i; of length 0, a
-            particle at B_i. The other end stays near A_i, and its turning is left out.
-        platform_mass: in six equal particles at the B_i; the payload is a particle at the tool point.
-    """
-
-    screw_lead: float = 0.010
-    drive: float = 1.2e-4
-    rod_mass: float = 0.8
-    rod_length: float = 0.0
-    platform_mass: float = 12.0
-
-
-class GoughStewart(Mechanism):
+class GoughStewart(SixLegs):
     """Pose [x, y, z, roll, pitch, yaw], joints q1..q6, the leg lengths |A_i B_i|.
 
     A leg reaches every point but its own base joint; what its stroke leaves of that is the margin `joint_travel`.
@@ -56,19 +37,10 @@ class GoughStewart(Mechanism):
     Ranges = GoughStewartRanges
     geometry: GoughStewartGeometry
     inertia: GoughStewartInertia
-    pose_names = ("x", "y", "z", "roll", "pitch", "yaw")
-    joint_names = ("q1", "q2", "q3", "q4", "q5", "q6")
     joint_units = ("m",) * 6
-    rotations = (3, 4, 5)
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.6, 0.0, 0.0, 0.0)  # of the default geometry
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=2000.0, speed=0.3, force=500.0)
-    margins = (*Mechanism.margins, "passive_joint")
-
-    @property
-    def characteristic_length(self) -> float:
-        """Mean distance of the B_i from their centroid [m]."""
-        points = np.array(self.geometry.platform_points)
-        return float(np.linalg.norm(points - points.mean(axis=0), axis=1).mean())
+    margins = (*SixLegs.margins, "passive_joint")
 
     @property
     def initial_pose(self) -> Array:
@@ -98,25 +70,6 @@ class GoughStewart(Mechanism):
         """(3, 6) B_i in R_E, by the inverse of E; [8.7] prints E itself."""
         e = ca.reshape(g.E, 4, 4).T
         return e[:3, :3].T @ (ca.reshape(g.platform_points, 3, 6) - ca.repmat(e[:3, 3], 1, 6))
-
-    @staticmethod
-    def rotation(pose: ca.SX) -> ca.SX:
-        """(3, 3) R = Rz(yaw) Ry(pitch) Rx(roll)."""
-        (cr, cp, cy), (sr, sp, sy) = ([f(pose[3 + k]) for k in range(3)] for f in (ca.cos, ca.sin))
-        return ca.vertcat(
-            ca.horzcat(cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
-            ca.horzcat(sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
-            ca.horzcat(-sp, cp * sr, cp * cr),
-        )
-
-    @staticmethod
-    def pose_rate_map(pose: ca.SX) -> ca.SX:
-        """Euler-angle rates from omega; not defined where the pitch is a quarter turn."""
-        cp, sp, cy, sy = ca.cos(pose[4]), ca.sin(pose[4]), ca.cos(pose[5]), ca.sin(pose[5])
-        rates = ca.vertcat(
-            ca.horzcat(cy / cp, sy / cp, 0), ca.horzcat(-sy, cy, 0), ca.horzcat(cy * sp / cp, sy * sp / cp, 1)
-        )
-        return ca.diagcat(ca.SX.eye(3), rates)
 
     @staticmethod
     def legs(pose: ca.SX, g: SimpleNamespace, twist: ca.SX | None = None) -> ca.SX:
@@ -226,22 +179,9 @@ class GoughStewart(Mechanism):
         points = (self.geometry.in_reference_frame(), self.geometry.in_tool_frame())
         return joints.mean(axis=1), joints.max(axis=1) + sum(float(np.abs(p).max()) for p in points)
 
-    def forward(self, joints: Array, start: Array | None = None) -> Array:
-        """(..., 6) -> (..., 6): Newton's method from a start near, NaN where it did not converge; [8.6.4.2].
-
-        From the default start a far pose may end in another assembly mode; give `start` where the pose is about known.
-
-        Args:
-            joints: leg lengths [m].
-            start: (..., 6) the current or last pose; `initial_pose` if not given.
-        """
-        return self.solve_forward(joints, start).pose
-
     def solve_forward(self, joints: Array, start: Array | None = None, iterations: int = 30) -> ForwardSolution:
         """As `forward`, and says where it converged, in how many steps and with which error."""
-        joints = self._possible(self._joints(joints))
-        begin = self._poses(self.initial_pose if start is None else start)
-        return solve_forward(self, *self._together(joints, begin), iterations)
+        return super().solve_forward(self._possible(self._joints(joints)), start, iterations)
 
     def assembly_modes(self, joints: Array) -> Array:
         """(6,) -> (k, 6), every real pose with these leg lengths, at most 40; the nearest to `initial_pose` first.
@@ -250,9 +190,7 @@ class GoughStewart(Mechanism):
             SelfMotion: the platform can move with its legs locked, so there are infinitely many.
             LostPaths: the continuation that finds them could not be certified.
         """
-        joints = self._joints(joints)
-        if joints.ndim != 1:
-            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        joints = self._one(joints)
         return assembly_modes(self, self._possible(joints))
 
     # Masses and drawing.
@@ -275,11 +213,10 @@ class GoughStewart(Mechanism):
         shares = {0.0: 1 / 6, 0.5: 4 / 6, 1.0: 1 / 6} if i.rod_length else {0.0: 1.0}
         for k in range(6):
             bodies.rotors.append(Rotor(i.drive * (TURN / i.screw_lead) ** 2, joints[k]))
-            bodies.particles.append(Particle("platform", i.platform_mass / 6, ends[:, k]))
             for place, share in shares.items():
                 point = ends[:, k] - place * i.rod_length / ca.norm_2(legs[:, k]) * legs[:, k]
                 bodies.particles.append(Particle(f"leg {k + 1}", share * i.rod_mass, point))
-        bodies.particles.append(Particle("platform", payload, pose[:3]))
+        self.platform_bodies(pose, ends, payload, bodies)
         return bodies
 
     @staticmethod

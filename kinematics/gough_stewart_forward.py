@@ -7,7 +7,7 @@ converges quadratically from a pose near enough.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from kinematics.study import displacement
 
 if TYPE_CHECKING:
     from kinematics.gough_stewart import GoughStewart
+    from kinematics.six_legs import SixLegs
 
 Array = np.ndarray
 
@@ -41,16 +42,6 @@ class ForwardSolution(NamedTuple):
     converged: Array
     iterations: Array
     residual: Array
-
-
-class SixLegs(Protocol):
-    """A platform on six legs whose lengths are known, wherever their base joints are."""
-
-    def leg_errors(self, pose: Array, joints: Array) -> tuple[Array, Array]:
-        """(k, 6) what each leg lacks [m], and the inverse Jacobian (k, 6, 6) [8.20] of the legs."""
-
-    def leg_sizes(self, joints: Array) -> tuple[Array, Array]:
-        """(k,) mean leg length, and the largest number that rounding of an error comes from [m]."""
 
 
 def solve_forward(robot: SixLegs, joints: Array, start: Array, iterations: int) -> ForwardSolution:

@@ -1,16 +1,21 @@
-"""Geometry of a 6-UPS platform: joint centres, frames (8.6.1 of Khalil and Dombre) and symmetric layouts (8.5.2.2)."""
+"""A 6-UPS platform's numbers: joint centres, frames (8.6.1 of Khalil and Dombre), symmetric layouts (8.5.2.2); masses.
+
+The masses and the joints' ranges are ours.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
 from kinematics.architecture_singularity import why_singular
+from kinematics.bodies import InertiaRecord
 from kinematics.errors import InvalidGeometry, InvalidValue
-from kinematics.geometry import TURN, GeometryRecord, Points, frame, length
+from kinematics.geometry import TURN, GeometryRecord, Points, frame, length, numbers_of
 from kinematics.ranges import Pair, RodRanges
 
 Array = np.ndarray
@@ -138,6 +143,31 @@ class GoughStewartGeometry(GeometryRecord):
 
 
 @dataclass(frozen=True)
+class GoughStewartInertia(InertiaRecord):
+    """Electric cylinders of a laboratory hexapod: an assumption of this project, not a datasheet. SI units.
+
+    Attributes:
+        screw_lead: of each cylinder [m/turn].
+        drive: inertia of motor and screw about the screw's axis.
+        rod_mass, rod_length: the moving end of each leg, a thin uniform rod from B_i towards A_i; of length 0, a
+            particle at B_i. The other end stays near A_i, and its turning is left out.
+        platform_mass: in six equal particles at the B_i; the payload is a particle at the tool point.
+    """
+
+    dimensions: ClassVar[Mapping[str, str]] = {"screw_lead": "length_per_turn", "rod_length": "length"}
+    screw_lead: float = 0.010
+    drive: float = 1.2e-4
+    rod_mass: float = 0.8
+    rod_length: float = 0.0
+    platform_mass: float = 12.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.screw_lead == 0.0:
+            raise InvalidValue("GoughStewartInertia screw_lead", self.screw_lead, "> 0 m/turn")
+
+
+@dataclass(frozen=True)
 class GoughStewartRanges(RodRanges):
     """Legs of two stages, joints that tilt up to 52 degrees: an assumption of this project, not a datasheet.
 
@@ -145,6 +175,7 @@ class GoughStewartRanges(RodRanges):
         rest: the tool point [m] at which, with the platform not turned, each leg lies along the axes of its two joints.
     """
 
+    dimensions: ClassVar[Mapping[str, str]] = {**RodRanges.dimensions, "rest": "length"}
     joints: Pair | tuple[Pair, ...] = (0.4, 1.0)
     passive: Pair = (0.9, 0.9)
     rest: tuple[float, float, float] = (0.0, 0.0, 0.6)
@@ -152,7 +183,8 @@ class GoughStewartRanges(RodRanges):
     def check(self, count: int) -> None:
         """As for `RodRanges`; and `rest` is a point."""
         super().check(count)
-        if np.shape(self.rest) != (3,) or not np.isfinite(self.rest).all():
+        rest = numbers_of(self.rest)
+        if rest is None or rest.shape != (3,) or not np.isfinite(rest).all():
             raise InvalidValue("GoughStewartRanges rest", self.rest, "three finite coordinates [m]")
 
 

@@ -14,8 +14,7 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import Bodies, InertiaRecord, Particle, Rotor
-from kinematics.errors import InvalidShape
+from kinematics.bodies import Bodies, Particle, Rotor
 from kinematics.geometry import TURN, GeometryRecord, angle, length, screw_pitch
 from kinematics.heli4_forward import Plates, plates
 from kinematics.indices import FviBounds
@@ -24,7 +23,7 @@ from kinematics.mechanism import Array, Build
 from kinematics.model import Model
 from kinematics.polynomial import real_roots
 from kinematics.rods import RodLevel
-from kinematics.rotary_limbs import ArmRanges, Limbs, RotaryLimbs, columns, radial_directions
+from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, radial_directions, upright_limbs
 from kinematics.twins import twins_of_halves
 
 _UPPER = (0.0, 0.0, 1.0, 1.0)  # which limbs hold the plate that rides on the screw: (7), (8)
@@ -58,23 +57,14 @@ class Heli4Geometry(GeometryRecord):
 
 
 @dataclass(frozen=True)
-class Heli4Inertia(InertiaRecord):
-    """A drive set of the Quattro's class: an assumption of this project, not a datasheet. SI units.
+class Heli4Inertia(ArmInertia):
+    """Arms as everywhere here; and the plates.
 
     Attributes:
-        drive: inertia of drive and gear at the joint.
-        arm_mass, arm_centre, arm_factor: the arm's mass, its centre of mass c as a fraction of L, and its inertia about
-            the joint over m c^2.
-        rod_pair_mass: both rods of a limb.
         plate_masses: lower plate (limbs 1 and 2) and upper plate.
         tool: inertia of the tool about e_z; the payload is a point on the lower plate.
     """
 
-    drive: float = 0.045
-    arm_mass: float = 0.9
-    arm_centre: float = 0.40
-    arm_factor: float = 1.25
-    rod_pair_mass: float = 0.26
     plate_masses: tuple[float, float] = (0.55, 0.55)
     tool: float = 6e-4
 
@@ -112,7 +102,7 @@ class Heli4(RotaryLimbs, RodLevel):
         """P_i, (2), (3), and the arms' directions, (4), (5): q from e_z outward."""
         radial, _ = radial_directions(g.azimuths)
         actuators = g.base_radius * radial + _heights(g.height_step * ca.DM(_UPPER))
-        return Limbs(actuators, columns(ca.SX([0, 0, 1]), 4), radial, g.arm_length, g.rod_length)
+        return upright_limbs(actuators, radial, g)
 
     @staticmethod
     def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
@@ -162,7 +152,7 @@ class Heli4(RotaryLimbs, RodLevel):
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
         """Arms with their drives, rods, plates, payload and tool."""
         i, plates = self.inertia, ("lower plate", "upper plate")
-        bodies = self.limb_bodies(pose, joints, g, i.rod_pair_mass, [plates[int(k)] for k in _UPPER])
+        bodies = self.limb_bodies(pose, joints, g, i.rod_mass, [plates[int(k)] for k in _UPPER])
         upper = pose[:3] + g.pitch / TURN * pose[3] * _E_Z
         lower = Particle(plates[0], i.plate_masses[0] + payload, pose[:3])
         bodies.particles.extend([lower, Particle(plates[1], i.plate_masses[1], upper)])
@@ -228,9 +218,7 @@ class Heli4(RotaryLimbs, RodLevel):
             found = self._plates(model)
             return [model.joints], [found.quartic_in_w(), found.quartic_in_t(), found.kappa]
 
-        joints = self._joints(joints)
-        if joints.ndim != 1:
-            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        joints = self._one(joints)
         in_w, in_t, (kappa,) = evaluate(self.program("quartics", build), joints)
         # w t = kappa: each unknown serves where it is the larger one, up to a factor that no symmetry makes a tie.
         least, tie = np.sqrt(np.abs(kappa)), 0.9

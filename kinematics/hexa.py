@@ -13,20 +13,19 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 
-from kinematics.bodies import Bodies, Particle
-from kinematics.errors import InvalidShape
+from kinematics.bodies import Bodies
 from kinematics.geometry import TURN, GeometryRecord, angle, length
 from kinematics.gough_stewart import GoughStewart
-from kinematics.gough_stewart_forward import ForwardSolution, apart, matched_pose, solve_forward
+from kinematics.gough_stewart_forward import apart, matched_pose
 from kinematics.gough_stewart_geometry import GoughStewartGeometry, symmetric_points
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array, Build
 from kinematics.model import Model
-from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, columns, radial_directions
+from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, columns, radial_directions, upright_limbs
+from kinematics.six_legs import SixLegs
 from kinematics.twins import twins
 
-_AROUND = [*range(6), 0]
 _BASE = symmetric_points(0.28, TURN / 18, 0.0)
 _PLATFORM = symmetric_points(0.10, TURN / 18, TURN / 6)
 _DEPTH = 0.55 / (0.300 + 0.650)  # of `home`, over arm and rod
@@ -77,7 +76,7 @@ class HexaInertia(ArmInertia):
     platform_mass: float = 0.8
 
 
-class Hexa(RotaryLimbs):
+class Hexa(SixLegs, RotaryLimbs):
     """Pose [x, y, z, roll, pitch, yaw], joints q1..q6 measured from e_z outward; elbows out.
 
     Orientation and twist are the Gough-Stewart platform's.
@@ -88,20 +87,10 @@ class Hexa(RotaryLimbs):
     Ranges = ArmRanges
     geometry: HexaGeometry
     inertia: HexaInertia
-    pose_names = GoughStewart.pose_names
-    joint_names = GoughStewart.joint_names
     joint_units = ("rad",) * 6
-    rotations = GoughStewart.rotations
     home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.55, 0.0, 0.0, 0.0)
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=1.0, force=50.0)
     margins = (*RotaryLimbs.margins, "passive_joint")
-    pose_rate_map = staticmethod(GoughStewart.pose_rate_map)
-
-    @property
-    def characteristic_length(self) -> float:
-        """Mean distance of the B_i from their centroid [m], as for the Gough-Stewart platform."""
-        points = np.array(self.geometry.platform_points)
-        return float(np.linalg.norm(points - points.mean(axis=0), axis=1).mean())
 
     @property
     def initial_pose(self) -> Array:
@@ -117,17 +106,17 @@ class Hexa(RotaryLimbs):
     def limbs(g: SimpleNamespace) -> Limbs:
         """Arms in vertical planes."""
         radial, _ = radial_directions(g.arm_azimuths)
-        return Limbs(ca.reshape(g.base_points, 3, 6), columns(ca.SX([0, 0, 1]), 6), radial, g.arm_length, g.rod_length)
+        return upright_limbs(ca.reshape(g.base_points, 3, 6), radial, g)
 
     @staticmethod
     def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """(3, 6) B_i."""
-        return columns(pose[:3], 6) + GoughStewart.rotation(pose) @ ca.reshape(g.platform_points, 3, 6)
+        return columns(pose[:3], 6) + SixLegs.rotation(pose) @ ca.reshape(g.platform_points, 3, 6)
 
     @classmethod
     def platform_axes(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """Parallel to the arms' axes where the platform is not turned."""
-        return GoughStewart.rotation(pose) @ cls.limbs(g).axes()
+        return SixLegs.rotation(pose) @ cls.limbs(g).axes()
 
     @staticmethod
     def _as_hexapod(joints: ca.SX, g: SimpleNamespace) -> SimpleNamespace:
@@ -151,18 +140,16 @@ class Hexa(RotaryLimbs):
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
         """Arms, rods, platform, payload."""
-        i, points = self.inertia, self.platform_points(pose, g)
-        bodies = self.limb_bodies(pose, joints, g, i.rod_mass, ["platform"] * 6)
-        bodies.particles.extend(Particle("platform", i.platform_mass / 6, points[:, k]) for k in range(6))
-        bodies.particles.append(Particle("platform", payload, pose[:3]))
+        bodies = self.limb_bodies(pose, joints, g, self.inertia.rod_mass, ["platform"] * 6)
+        self.platform_bodies(pose, self.platform_points(pose, g), payload, bodies)
         return bodies
 
     @classmethod
     def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
         """Base, arms, rods, platform, tool."""
         ends = cls.platform_points(pose, g)
-        lines = {"base": cls.limbs(g).actuators[:, _AROUND], "platform": ends[:, _AROUND]}
-        return lines | cls.limb_lines(pose, joints, g) | {"tool": ca.horzcat(ca.sum2(ends) / 6, pose[:3])}
+        lines = cls.limb_lines(pose, joints, g) | {"platform": ends[:, [*range(6), 0]]}
+        return lines | {"tool": ca.horzcat(ca.sum2(ends) / 6, pose[:3])}
 
     # The forward model.
 
@@ -184,22 +171,6 @@ class Hexa(RotaryLimbs):
         points = np.abs(self.geometry.base_points).max() + np.abs(self.geometry.platform_points).max()
         return rods, rods + self.geometry.arm_length + points
 
-    def forward(self, joints: Array, start: Array | None = None) -> Array:
-        """(..., 6) -> (..., 6): Newton's method from a start near, NaN where it did not converge; [8.6.4.2].
-
-        From the default start a far pose may end in another assembly mode; give `start` where the pose is about known.
-
-        Args:
-            joints: [rad].
-            start: (..., 6) the current or last pose; `initial_pose` if not given.
-        """
-        return self.solve_forward(joints, start).pose
-
-    def solve_forward(self, joints: Array, start: Array | None = None, iterations: int = 30) -> ForwardSolution:
-        """As `forward`, and says where it converged, in how many steps and with which error."""
-        begin = self._poses(self.initial_pose if start is None else start)
-        return solve_forward(self, *self._together(self._joints(joints), begin), iterations)
-
     def assembly_modes(self, joints: Array) -> Array:
         """(6,) -> (k, 6), every real pose with these joints, at most 40; the nearest to `initial_pose` first.
 
@@ -210,9 +181,7 @@ class Hexa(RotaryLimbs):
             SelfMotion: with these joints locked the platform can move.
             LostPaths: the continuation that finds them could not be certified.
         """
-        joints = self._joints(joints)
-        if joints.ndim != 1:
-            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        joints = self._one(joints)
         if not np.isfinite(joints).all():
             return np.empty((0, 6))
         program = self.program("elbows", lambda m: ([m.joints], [self.limbs(m.g).elbows(m.joints).T]))

@@ -50,6 +50,7 @@ class Mechanism(Definition):
         self.inertia = inertia if inertia is not None else self.Inertia()
         if not isinstance(self.inertia, self.Inertia):
             raise InvalidValue(f"{type(self).__name__} inertia", inertia, f"a {self.Inertia.__name__}")
+        self.inertia.check(len(self.joint_names))
         self.ranges = ranges if ranges is not None else self.Ranges()
         if not isinstance(self.ranges, self.Ranges):
             raise InvalidValue(f"{type(self).__name__} ranges", ranges, f"a {self.Ranges.__name__}")
@@ -263,6 +264,13 @@ class Mechanism(Definition):
 
     def _joints(self, joints: Array) -> Array:
         return checked(joints, "joints", self.joint_names)
+
+    def _one(self, joints: Array) -> Array:
+        """(m,), for `assembly_modes`."""
+        joints = self._joints(joints)
+        if joints.ndim != 1:
+            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        return joints
 
     @staticmethod
     def _together(first: Array, second: Array) -> tuple[Array, Array]:

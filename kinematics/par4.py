@@ -18,7 +18,6 @@ import numpy as np
 
 from kinematics.bodies import Bodies, Particle, Rotor
 from kinematics.distinct import distinct
-from kinematics.errors import InvalidShape
 from kinematics.geometry import GeometryRecord, angle, length, ratio
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
@@ -26,7 +25,7 @@ from kinematics.linear import determinant
 from kinematics.mechanism import Array, Build, Mechanism
 from kinematics.model import Model
 from kinematics.par4_forward import Halves, candidates
-from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, columns, radial_directions
+from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, columns, radial_directions, upright_limbs
 from kinematics.twins import twins_of_halves
 
 _DEG = math.pi / 180.0
@@ -103,7 +102,7 @@ class Par4(RotaryLimbs):
     def limbs(g: SimpleNamespace) -> Limbs:
         """Arms in vertical planes through e_z."""
         radial, _ = radial_directions(g.azimuths)
-        return Limbs(g.base_radius * radial, columns(ca.SX([0, 0, 1]), 4), radial, g.arm_length, g.rod_length)
+        return upright_limbs(g.base_radius * radial, radial, g)
 
     @staticmethod
     def half_bar(psi: ca.SX, g: SimpleNamespace) -> ca.SX:
@@ -148,7 +147,7 @@ class Par4(RotaryLimbs):
         """Base, arms, rod pairs by their midlines, the halves, a bar, the tool."""
         ends, half = cls.platform_points(pose, g), cls.half_bar(pose[3] / g.amplification, g)
         pointer = pose[:3] + g.platform_radius / 2 * ca.vertcat(ca.cos(pose[3]), ca.sin(pose[3]), 0)
-        lines = cls.limb_lines(pose, joints, g) | {"base": cls.limbs(g).actuators[:, [0, 1, 2, 3, 0]]}
+        lines = cls.limb_lines(pose, joints, g)
         lines["half 1"] = ca.horzcat(ends[:, 0], pose[:3] - half, ends[:, 1])
         lines["half 2"] = ca.horzcat(ends[:, 2], pose[:3] + half, ends[:, 3])
         lines["bar"] = ca.horzcat(pose[:3] - half, pose[:3] + half)
@@ -202,9 +201,7 @@ class Par4(RotaryLimbs):
 
     def assembly_modes(self, joints: Array) -> Array:
         """(4,) -> (k, 4), every isolated real pose with these joints, at most eight; the lowest first."""
-        joints = self._joints(joints)
-        if joints.ndim != 1:
-            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        joints = self._one(joints)
         _, poses = self._candidates(joints[None], every=True)
         poses = self._polished(poses, np.broadcast_to(joints, poses.shape), 20)
         poses = poses[np.isfinite(poses).all(axis=1)]

@@ -18,7 +18,6 @@ import numpy as np
 from kinematics import peppermill_limbs as limbs
 from kinematics.bodies import Bodies, InertiaRecord, Particle, Rod, Rotor
 from kinematics.drives import from_actuators, to_actuators
-from kinematics.errors import InvalidShape
 from kinematics.geometry import TURN, GeometryRecord, length, screw_pitch
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
@@ -217,9 +216,7 @@ class Peppermill(Mechanism):
 
     def assembly_modes(self, joints: Array) -> Array:
         """(4,) -> (k, 4), every real pose with these joints, at most four; the working one first."""
-        joints = self._joints(joints)
-        if joints.ndim != 1:
-            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        joints = self._one(joints)
         modes = self.forward_modes(joints)
         modes = modes[np.isfinite(modes).all(axis=-1)]
         _, first = np.unique(modes, axis=0, return_index=True)

@@ -185,9 +185,7 @@ class Planar(Mechanism):
 
     def assembly_modes(self, joints: Array) -> Array:
         """(3,) -> (k, 3), every isolated real pose with these joints, at most six; the nearest to `home` first."""
-        joints = self._joints(joints)
-        if joints.ndim != 1:
-            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        joints = self._one(joints)
         centres, radii, points = self._problem(joints[None])
         rows, p, theta = placements(centres, radii, points, every=True)
         det = rods_and_determinant(p, theta, centres[rows], points)[2]

@@ -5,13 +5,15 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import casadi as ca
 import numpy as np
 
 from kinematics.errors import InvalidValue
+from kinematics.geometry import numbers_of
 
 Array = np.ndarray
 Pair = tuple[float, float]
@@ -27,6 +29,7 @@ class JointRanges:
         joints: lowest and highest value of every driven joint, or such a pair for each [m or rad]; may be infinite.
     """
 
+    dimensions: ClassVar[Mapping[str, str]] = {}  # as in a geometry, of the other fields
     joints: Pair | tuple[Pair, ...] = (-math.inf, math.inf)
 
     def limits(self, count: int) -> Array:
@@ -35,8 +38,8 @@ class JointRanges:
         Raises:
             InvalidValue: neither one pair nor one for each, or a pair not in rising order.
         """
-        given = _numbers(self.joints)
-        if given.shape not in ((2,), (count, 2)) or not (given[..., 0] < given[..., 1]).all():
+        given = numbers_of(self.joints)
+        if given is None or given.shape not in ((2,), (count, 2)) or not (given[..., 0] < given[..., 1]).all():
             wanted = f"lowest < highest, once or for each of {count} joints"
             raise InvalidValue(f"{type(self).__name__} joints", self.joints, wanted)
         return np.broadcast_to(given, (count, 2))
@@ -63,13 +66,14 @@ class RodRanges(JointRanges):
         passive: the largest angle from rest at the drives' ends of the rods and at the platform's ends [rad].
     """
 
+    dimensions: ClassVar[Mapping[str, str]] = {"passive": "angle"}
     passive: Pair = (1.0, 1.0)
 
     def check(self, count: int) -> None:
         """As for `JointRanges`; and each passive angle must be in (0, pi]."""
         super().check(count)
-        given = _numbers(self.passive)
-        if given.shape != (2,) or not ((given > 0.0) & (given <= math.pi)).all():
+        given = numbers_of(self.passive)
+        if given is None or given.shape != (2,) or not ((given > 0.0) & (given <= math.pi)).all():
             wanted = "two angles in (0, pi] rad: drives' ends, platform's ends"
             raise InvalidValue(f"{type(self).__name__} passive", self.passive, wanted)
 
@@ -113,15 +117,6 @@ class PassiveJoint(NamedTuple):
             reach = ca.sin(allowed) * self.length
             return [reach - along, reach + along, allowed]
         return [along - ca.cos(allowed) * self.length, allowed]
-
-
-def _numbers(given: object) -> Array:
-    """An array of floats; of one NaN where any of it is not a number."""
-    try:
-        array = np.array(given)
-    except ValueError:  # ragged
-        return np.full(1, np.nan)
-    return array.astype(float) if array.dtype.kind in "iuf" else np.full(1, np.nan)
 
 
 def joint_travel(joints: ca.SX, limits: Array) -> ca.SX:

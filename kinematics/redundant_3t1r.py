@@ -12,17 +12,15 @@ other direction would be turned with the platform at one end and not at the othe
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import casadi as ca
 import numpy as np
 from scipy.linalg import block_diag
 
 from kinematics.bodies import Bodies, Particle, Rod, Rotor
-from kinematics.errors import InvalidShape
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
-from kinematics.linear import volume
 from kinematics.mechanism import Array
 from kinematics.model import Model
 from kinematics.ranges import PassiveJoint
@@ -30,6 +28,7 @@ from kinematics.redundancy import BestFit, EncoderCheck, check_encoders, least_s
 from kinematics.redundant_3t1r_clearance import arm_distances, arms_apart
 from kinematics.redundant_3t1r_forward import candidate_build
 from kinematics.redundant_3t1r_geometry import Redundant3T1RGeometry, Redundant3T1RInertia, Redundant3T1RRanges
+from kinematics.redundant_3t1r_singularities import ParallelSingularity, parallel_conditions
 from kinematics.rods import RodLevel
 
 _LIMBS = 6
@@ -40,19 +39,6 @@ _FLOOR = (1, 1, 0, 0, -1, -1)  # z_1 = z_2 = -z_5 = -z_6, z_3 = z_4 = 0
 _PARALLELOGRAMS = (2, 3)
 _OUTER = (0, 1, 4, 5)
 _ROUNDING = 1e-9  # by how much rounding may break (21) [m]
-
-
-class ParallelSingularity(NamedTuple):
-    """The two conditions of section V.B; J_x loses rank only where one of them is zero.
-
-    Attributes:
-        translation: (...,) sqrt(det M^T M) of (37), in [0, 1]: the outer arms hold B_1 where it is not zero.
-        rotation: (...,) larger of |n_3 . (r x e_z)| and |n_4 . (r x e_z)| over |r x e_z|, in [0, 1]: the middle arms
-            hold the angle where it is not zero.
-    """
-
-    translation: Array
-    rotation: Array
 
 
 class Redundant3T1R(RodLevel):
@@ -172,13 +158,10 @@ class Redundant3T1R(RodLevel):
         return cls.model().j_x_at_pose[:, :3].T
 
     def parallel_singularity(self, pose: Array) -> ParallelSingularity:
-        """How far the pose is from a parallel singularity; (35)-(38) with M of arms 1, 2, 5 and 6."""
+        """How far the pose is from a parallel singularity."""
 
-        def build(_: Model) -> list[ca.SX]:
-            arms, pose_ = self._directions_symbolic(), self.model().pose
-            across = ca.vertcat(ca.sin(pose_[3]), -ca.cos(pose_[3]), 0)  # r x e_z over d
-            outer = volume(arms[:, list(_OUTER)].T) / ca.sqrt((4 / 3) ** 3)
-            return [outer, ca.fmax(ca.fabs(arms[:, 2].T @ across), ca.fabs(arms[:, 3].T @ across))]
+        def build(model: Model) -> list[ca.SX]:
+            return parallel_conditions(self._directions_symbolic(), model.pose[3])
 
         translation, rotation = self._evaluate("parallel", build, pose)
         return ParallelSingularity(translation[..., 0], rotation[..., 0])
@@ -263,9 +246,7 @@ class Redundant3T1R(RodLevel):
         The paper's four candidates close arms 1, 2 and 5 (and 3, 4 only at the right distance from B_1): mostly one of
         them closes all six, on the planes y_b1 = 0 and z = 0 two of B_1 may.
         """
-        joints = self._joints(joints)
-        if joints.ndim != 1:
-            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        joints = self._one(joints)
         poses, errors, ahead = self._candidates(joints)
         closing = np.flatnonzero(errors <= tolerance)
         return poses[closing[np.argsort(-ahead[closing], kind="stable")]]

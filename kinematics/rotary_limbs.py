@@ -83,6 +83,12 @@ def radial_directions(azimuths: ca.SX) -> tuple[ca.SX, ca.SX]:
     return ca.vertcat(c, s, zero), ca.vertcat(-s, c, zero)
 
 
+def upright_limbs(actuators: ca.SX, radial: ca.SX, g: SimpleNamespace) -> Limbs:
+    """Arms in vertical planes along u_i, counted from e_z outward; (3, m) each."""
+    up = columns(ca.SX([0, 0, 1]), radial.shape[1])
+    return Limbs(actuators, up, radial, g.arm_length, g.rod_length)
+
+
 def columns(point: ca.SX, count: int) -> ca.SX:
     """(3, count) the same point in every column."""
     return ca.repmat(point, 1, count)
@@ -194,8 +200,9 @@ class RotaryLimbs(Mechanism):
 
     @classmethod
     def limb_lines(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
-        """Arms and rods as polylines, each rod one line."""
+        """Base, arms and rods as polylines, each rod one line."""
         base, elbows, platform = cls.limbs(g).actuators, cls.limbs(g).elbows(joints), cls.platform_points(pose, g)
         count = joints.numel()
         arms = {f"arm {i + 1}": ca.horzcat(base[:, i], elbows[:, i]) for i in range(count)}
-        return arms | {f"rod {i + 1}": ca.horzcat(elbows[:, i], platform[:, i]) for i in range(count)}
+        rods = {f"rod {i + 1}": ca.horzcat(elbows[:, i], platform[:, i]) for i in range(count)}
+        return {"base": base[:, [*range(count), 0]]} | arms | rods

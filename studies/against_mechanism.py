@@ -7,22 +7,21 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from studies.errors import KeyPath
+from studies.hardware import hardware_faults, hardware_tables
 from studies.mechanisms import GeometryField, geometry_fields, shape
 from studies.schema import (
     REGION_KINDS,
     BoxRegion,
     Certify,
-    Cycle,
     CylinderRegion,
     Optimise,
     Requirement,
     Study,
     Sum,
-    Trajectory,
-    Waypoint,
-    WaypointPath,
-    table_of,
 )
+from studies.schema_base import table_of
+from studies.schema_path import Cycle, Waypoint, WaypointPath
+from studies.schema_trajectory import Trajectory
 from studies.units import Dimension, Key, Table
 
 if TYPE_CHECKING:
@@ -43,6 +42,7 @@ def study_table(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> Table:
     return table_of(Study).updated(
         {
             "geometry": Table({name: _dimensions(field) for name, field in fields.items()}),
+            **hardware_tables(mechanism),
             "region": _region_table(mechanism, raw.get("region")),
             "optimise": table_of(Optimise).updated(optimise),
             "certify": table_of(Certify).updated({"margins": Key("a list out of", choices=mechanism.margins)}),
@@ -74,6 +74,7 @@ def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyP
         field = fields[name]
         if shape(value) != field.shape or not all(field.allows(n, n) for n in _numbers(value)):
             yield ("geometry", name)
+    yield from hardware_faults(data, mechanism)
     if isinstance(data.get("region"), dict):
         yield from _region_faults(data["region"], mechanism)
     optimise = _table(data, "optimise")

@@ -46,7 +46,10 @@ FormatOption = Annotated[
 
 @app.command("list")
 def list_(json: JsonOption = False) -> None:
-    """List the mechanisms and the studies that come with Linkwright."""
+    """List the mechanisms and the studies that come with Linkwright.
+
+    linkwright list --json
+    """
     from kinematics import MECHANISMS
     from studies import console
     from studies.load import load_study
@@ -71,7 +74,12 @@ def run(
         typer.Option("--commit", help="Also put optimum.toml beside the study, for `check` to verify from now on."),
     ] = False,
 ) -> None:
-    """The whole way: optimise, search densely, time the cycle, verify, prove, write set-points and report."""
+    """The whole way: optimise, search densely, time the cycle, verify, prove, write set-points and report.
+
+    linkwright run heli4 --out results
+
+    linkwright run my_robot/study.toml --commit
+    """
     from studies import console
     from studies.outputs import write_run
 
@@ -86,7 +94,10 @@ def run(
 
 @app.command()
 def optimise(study: StudyArgument, json: JsonOption = False) -> None:
-    """Optimise the geometry and print what was found; writes nothing."""
+    """Optimise the geometry and print what was found; writes nothing.
+
+    linkwright optimise heli4 --json
+    """
     from kinematics.errors import InvalidValue
     from studies import console
 
@@ -181,7 +192,12 @@ def certify(
     json: JsonOption = False,
     prototype: PrototypeOption = False,
 ) -> None:
-    """Prove the requirements of the committed optimum at every pose of the region; exits 1 if one is not."""
+    """Prove the requirements of the committed optimum at every pose of the region; exits 1 if one is not.
+
+    linkwright certify heli4 --out results
+
+    linkwright certify gough_stewart --margin joint_travel --at-least 0.02
+    """
     from studies import console
     from studies.certify import question_of
     from studies.outputs import write_proofs
@@ -204,16 +220,21 @@ def trajectory(
     out: OutOption = None,
     prototype: PrototypeOption = False,
     law: Annotated[
-        str | None, typer.Option("--law", help="Timing law, in place of the study's: jerk or toppra.")
+        str | None, typer.Option("--law", help="Timing law, in place of the study's: jerk, toppra or free.")
     ] = None,
     formats: FormatOption = None,
 ) -> None:
-    """Time and verify the study's cycle on its committed optimum; with --out, write the set-points."""
+    """Time and verify the study's cycle on its committed optimum; with --out, write the set-points.
+
+    linkwright trajectory cycle_reference --law toppra
+
+    linkwright trajectory heli4 --out results --format csv --format ros2
+    """
     from kinematics.errors import InvalidValue
     from studies import console
     from studies.outputs import write_setpoints
     from studies.pipeline import time_cycle
-    from studies.schema import LAWS
+    from studies.schema_trajectory import LAWS
 
     if law is not None and law not in LAWS:
         raise InvalidValue("--law", law, f"one of {', '.join(LAWS)}")
@@ -238,7 +259,10 @@ def trajectory(
 def report(
     study: StudyArgument, out: OutOption = None, json: JsonOption = False, prototype: PrototypeOption = False
 ) -> None:
-    """Write the report and the set-points of the committed optimum; its proofs are replayed, nothing is optimised."""
+    """Write the report and the set-points of the committed optimum; its proofs are replayed, nothing is optimised.
+
+    linkwright report heli4 --out results
+    """
     from studies import console
     from studies.optimum import committed_certificates
     from studies.outputs import write_report
@@ -259,13 +283,16 @@ def export(
     out: Annotated[Path, typer.Option("--out", help="The file to write.")],
     format_: Annotated[Literal["mjcf"], typer.Option("--format", help="MJCF, MuJoCo's format.")] = "mjcf",  # noqa: ARG001
     rods: Annotated[
-        Literal["split", "uniform"],
-        typer.Option("--rods", help="Masses at the rods' ends, as the torques of a study have it, or rods as bodies."),
-    ] = "split",
+        Literal["split", "uniform"] | None,
+        typer.Option("--rods", help="Masses at the rods' ends, or rods as bodies (default: as the study has it)."),
+    ] = None,
     json: JsonOption = False,
     prototype: PrototypeOption = False,
 ) -> None:
-    """Write the committed optimum as a multibody model for a simulator, at the cycle's start or at home."""
+    """Write the committed optimum as a multibody model for a simulator, at the cycle's start or at home.
+
+    linkwright export heli4 --out heli4.xml --rods uniform
+    """
     from kinematics.bodies import UNIFORM
     from studies import console
     from studies.outputs import write_model
@@ -273,7 +300,8 @@ def export(
     asked = _load(study)
     robot = _robot(study, asked, prototype)
     _require_writable(out.parent)
-    written = write_model(robot, asked, UNIFORM if rods == "uniform" else 0.0, out)
+    rod_middle = None if rods is None else {"split": 0.0, "uniform": UNIFORM}[rods]
+    written = write_model(robot, asked, rod_middle, out)
     console.print_files([written], json)
 
 
@@ -285,7 +313,10 @@ def check(
     ] = None,
     json: JsonOption = False,
 ) -> None:
-    """Verify committed optimum.toml files again, figure by figure; for CI."""
+    """Verify committed optimum.toml files again, figure by figure; for CI.
+
+    linkwright check heli4 my_robot/study.toml --json
+    """
     from studies import console
     from studies.check import check_study
     from studies.locate import FOLDER, study_names

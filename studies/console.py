@@ -104,6 +104,7 @@ def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Ti
                 **made_for,
                 **figures,
                 "proved_on_the_path": timing.cycle.certificate.margins,
+                "proved_over_limit": timing.cycle.proved,
                 "between_setpoints": between,
                 "seconds": timing.seconds,
                 "files": files,
@@ -128,7 +129,7 @@ def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Ti
         which = f", piece {k}" if len(timing.cycle.there) > 1 else ""
         print_table(
             f"Way there{which}, between the gridpoints too",
-            ("quantity", "peak", "limit", "peak over limit", "joint", "at [s]"),
+            ("quantity", "peak", "limit", "peak over limit", "proved at most", "joint", "at [s]"),
             piece.timed.verification.rows(),
         )
     _print_between(timing)

@@ -11,7 +11,9 @@ from pydantic import ValidationError
 from studies.against_mechanism import faults, study_table
 from studies.errors import KeyPath, Problem, StudyError, spelled
 from studies.mechanisms import mechanism_class, mechanism_names
-from studies.schema import Study, Waypoint, table_of
+from studies.schema import Study
+from studies.schema_base import table_of
+from studies.schema_path import Waypoint
 from studies.setup import path_of
 from studies.toml_file import TomlFile, read_toml
 from studies.units import Conversion, Key, Table
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
     from kinematics import Mechanism
 
 # Without a known mechanism nothing can be said about these.
-_OF_THE_MECHANISM = ("geometry", "region", "optimise", "certify", "requirement")
+_OF_THE_MECHANISM = ("geometry", "inertia", "ranges", "region", "optimise", "certify", "requirement")
 
 
 def load_study(path: Path) -> Study:

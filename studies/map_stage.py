@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from design import Box, Cylinder, Region
-from design.certified import CertifiedRegion, certified_cells, certified_cylinder
+from design.certified import CertifiedRegion, certified_cylinder
+from design.certified_cells import certified_cells
 from design.level_sets import LevelSet, level_set
 from studies.map_options import InvalidOption, MapRequest, angles_of
 

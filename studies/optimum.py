@@ -17,6 +17,7 @@ from studies.errors import KeyPath, StudyError, spelled
 from studies.mechanisms import mechanism_class
 from studies.pipeline import Outcome
 from studies.schema import Study
+from studies.setup import robot_of
 from studies.toml_file import TomlFile, read_toml
 
 FILE = "optimum.toml"
@@ -55,7 +56,7 @@ class Optimum:
         return entries
 
     def robot(self, study: Study) -> Mechanism:
-        """The study's mechanism with this geometry.
+        """The study's mechanism with this geometry, and the study's masses and joint ranges.
 
         Raises:
             StudyError: another mechanism, a missing or unknown field, or an impossible value, with its line.
@@ -71,9 +72,10 @@ class Optimum:
             if field not in given:
                 raise self.fault(("geometry",), f"no {field}", f"all of {', '.join(known)}")
         try:
-            return kind(kind.Geometry(**{name: _tuples(value) for name, value in given.items()}))
+            geometry = kind.Geometry(**{name: _tuples(value) for name, value in given.items()})
         except InvalidGeometry as error:
             raise self.fault(("geometry", error.field), spelled(given[error.field]), error.expected) from error
+        return robot_of(study, geometry)
 
 
 def optimum_of(outcome: Outcome) -> Optimum:

@@ -17,7 +17,8 @@ from studies.committed_proofs import proof_files
 from studies.optimum import FILE, optimum_of
 from studies.pipeline import Outcome, Timing
 from studies.report import html_report, pictures_of
-from studies.schema import Study, Trajectory
+from studies.schema import Study
+from studies.schema_trajectory import Trajectory
 from trajectory import CannotWrite, write_files
 from trajectory.drive_files import drive_files
 
@@ -58,13 +59,13 @@ def write_proofs(proofs: Sequence[Proof], folder: Path) -> list[Path]:
     return write_files(folder, {f"{p.certificate.margin}.npz": certificate_bytes(p.certificate) for p in proofs})
 
 
-def write_model(robot: Mechanism, study: Study, rod_middle: float, file: Path) -> Path:
+def write_model(robot: Mechanism, study: Study, rod_middle: float | None, file: Path) -> Path:
     """The robot as an MJCF file that starts where the study's cycle does, with its payload; else at home, empty.
 
     Args:
         robot: whose geometry and masses are written.
         study: asks for the cycle.
-        rod_middle: share of each rod's mass at its middle, in place of the robot's.
+        rod_middle: share of each rod's mass at its middle; None for the robot's own.
         file: what to write.
 
     Raises:
@@ -78,7 +79,8 @@ def write_model(robot: Mechanism, study: Study, rod_middle: float, file: Path) -
         (pose,) = path.evaluate(np.array(0.0), 0)
     if file.is_dir():
         raise CannotWrite(file, "it is a folder")
-    robot = type(robot)(robot.geometry, replace(robot.inertia, rod_middle=rod_middle))
+    if rod_middle is not None:
+        robot = type(robot)(robot.geometry, replace(robot.inertia, rod_middle=rod_middle), robot.ranges)
     return write_files(file.parent, {file.name: mjcf(robot, pose, payload)})[0]
 
 

@@ -16,11 +16,12 @@ from design.region import Region
 from design.search import WorstPoses
 from design.synthesis import Progress, Synthesis, synthesise, worst_of
 from kinematics import Mechanism
-from studies import schema, setup
+from studies import setup
 from studies.certify import Proof, Question, prove_all
 from studies.errors import Failed, RequirementFailed
 from studies.schema import Study
-from trajectory import Cycle, Move, Setpoints, cycle_setpoints, there_and_back
+from studies.schema_trajectory import Trajectory
+from trajectory import Cycle, Move, Setpoints, cycle_setpoints, lower_bound, there_and_back
 
 
 @dataclass(frozen=True)
@@ -31,12 +32,14 @@ class Timing:
         cycle: both ways, timed and verified.
         setpoints: of the cycle, stretched to whole periods and verified again.
         approach: from home; None where the study asks for none.
+        lower_bound: no motion on the path itself takes less for the way there, even without a limit of jerk [s].
         seconds: wall-clock time of timing and verification.
     """
 
     cycle: Cycle
     setpoints: Setpoints
     approach: Move | None
+    lower_bound: float
     seconds: float
 
     @property
@@ -50,6 +53,7 @@ class Timing:
         return {
             "law": there[0].motion.name,
             "half_cycle": self.half_cycle,
+            "lower_bound": self.lower_bound,
             "cycle_on_the_bus": float(self.setpoints.time[-1]),
             "repair_factor": max(timed.factor for timed in there),
             "peak_over_limit": {
@@ -141,7 +145,7 @@ def optimise(study: Study, progress: Progress) -> Synthesis:
     )
 
 
-def margins_on_path(problem: Problem, robot: Mechanism, asked: schema.Trajectory) -> dict[str, float]:
+def margins_on_path(problem: Problem, robot: Mechanism, asked: Trajectory) -> dict[str, float]:
     """The worst value of each requirement's margin on the cycle's path; NaN counts as -inf."""
     path = setup.path_of(asked, robot.pose_names)
     (poses,) = path.evaluate(np.linspace(0.0, path.length, asked.grid + 1), 0)
@@ -152,7 +156,7 @@ def margins_on_path(problem: Problem, robot: Mechanism, asked: schema.Trajectory
     return found
 
 
-def time_cycle(asked: schema.Trajectory, robot: Mechanism) -> Timing:
+def time_cycle(asked: Trajectory, robot: Mechanism) -> Timing:
     """Time, verify and sample the study's cycle on a robot."""
     from trajectory.moves import plan_move
 
@@ -168,7 +172,8 @@ def time_cycle(asked: schema.Trajectory, robot: Mechanism) -> Timing:
         gentle = setup.approach_limits(asked.approach, limits, len(robot.joint_names))
         home, units = np.array(robot.home), robot.actuator_units
         approach = plan_move(robot, home, points.pose[0], gentle, payload, asked.period, units)
-    return Timing(cycle, points, approach, seconds)
+    bound = sum(lower_bound(robot, piece.path, limits, payload) for piece in cycle.there)
+    return Timing(cycle, points, approach, bound, seconds)
 
 
 def run(study: Study, robot: Mechanism | None, progress: Progress, compare_cycles: bool = True) -> Outcome:

@@ -82,6 +82,8 @@ def _timing_figures(timing: Timing) -> list[tuple[str, str]]:
     return [
         ("law", figures["law"]),
         ("half cycle [s]", f"{figures['half_cycle']:.6f}"),
+        ("no motion on this path, even without a limit of jerk, takes less than [s]", f"{figures['lower_bound']:.6f}"),
+        ("half cycle over that bound", f"{figures['half_cycle'] / figures['lower_bound']:.4f}"),
         ("cycle on the bus, there and back [s]", f"{on_bus:.6f}"),
         ("cycles per second", f"{1 / on_bus:.3f}"),
         ("repair: time stretched by", f"{figures['repair_factor']:.6f}"),

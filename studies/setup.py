@@ -12,8 +12,10 @@ from design import Bounds, Box, Cylinder, Region, Requirement, SumLimit
 from design.nlp import Problem
 from kinematics import FviBounds, InvalidValue, Mechanism
 from kinematics.drives import to_actuators
-from studies import schema
+from kinematics.geometry import GeometryRecord
+from studies import schema_path, schema_trajectory
 from studies.errors import StudyError
+from studies.hardware import inertia_of, ranges_of
 from studies.mechanisms import mechanism_class
 from studies.schema import CylinderRegion, Study
 from studies.toml_file import read_toml
@@ -24,10 +26,10 @@ from trajectory.drive_files import Drive, drive_files
 OBJECTIVE = "fvi"
 
 
-def robot_of(study: Study) -> Mechanism:
-    """The study's mechanism: the prototype with the study's own geometry on top."""
+def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
+    """The study's mechanism, masses and joint ranges; `geometry` in place of the prototype with the study's changes."""
     kind = mechanism_class(study.mechanism)
-    return kind(kind.Geometry(**study.geometry))
+    return kind(geometry or kind.Geometry(**study.geometry), inertia_of(study), ranges_of(study))
 
 
 def region_of(study: Study) -> Region:
@@ -67,14 +69,14 @@ def problem_of(study: Study) -> Problem:
     )
 
 
-def path_of(asked: schema.Trajectory, pose_names: tuple[str, ...]) -> Path:
+def path_of(asked: schema_trajectory.Trajectory, pose_names: tuple[str, ...]) -> Path:
     """The path there, of poses with these coordinates.
 
     Raises:
         InvalidPath: of a waypoint that does not fit.
     """
     if asked.cycle is not None:
-        return schema.adept_cycle(asked.cycle.model_dump(), pose_names=pose_names)
+        return schema_path.adept_cycle(asked.cycle.model_dump(), pose_names=pose_names)
     assert asked.path is not None
     waypoints = asked.path.waypoint
     poses = tuple(tuple(w.coordinates.get(name) for name in pose_names) for w in waypoints)
@@ -101,7 +103,7 @@ def require_cycle_inside(study: Study, file: FilePath) -> None:
         raise StudyError([problem])
 
 
-def drive_of(drive: schema.Drive) -> Drive:
+def drive_of(drive: schema_trajectory.Drive) -> Drive:
     """Names and encoders of the axes."""
     return Drive(drive.axes, drive.increments, drive.gear)
 
@@ -135,12 +137,12 @@ def _along(robot: Mechanism, path: Path, period: float) -> Setpoints:
     return Setpoints.of_table(table, robot.pose_names, robot.actuator_names, robot.actuator_units, header)
 
 
-def limits_of(limits: schema.Limits) -> Limits:
+def limits_of(limits: schema_trajectory.Limits) -> Limits:
     """The limits of the cycle."""
     return Limits(**limits.model_dump())
 
 
-def timing_of(asked: schema.Trajectory) -> tuple[Timing, tuple[str, ...]]:
+def timing_of(asked: schema_trajectory.Trajectory) -> tuple[Timing, tuple[str, ...]]:
     """The study's timing law, and the limits that it is run without although the study may set them.
 
     Only jerk: it makes a motion smooth, while what else a law cannot keep rates the drives, and is refused.
@@ -149,12 +151,16 @@ def timing_of(asked: schema.Trajectory) -> tuple[Timing, tuple[str, ...]]:
         from trajectory.toppra_law import time_optimal
 
         return partial(time_optimal, intervals=asked.grid), ("jerk",)
+    if asked.law == "free":
+        from trajectory.free_law import free_motion
+
+        return free_motion, ()
     from trajectory.jerk_law import jerk_limited
 
     return jerk_limited, ()
 
 
-def approach_limits(asked: schema.Approach, drives: Limits, joints: int) -> Limits:
+def approach_limits(asked: schema_trajectory.Approach, drives: Limits, joints: int) -> Limits:
     """The approach's own limits, nowhere above the drives', and the drives' torque."""
     own = Limits(asked.speed, asked.acceleration, jerk=asked.jerk)
     merged: dict[str, Any] = {"torque": drives.torque}

@@ -80,6 +80,12 @@ class Cycle:
         return sum(piece.duration for piece in self.pieces)
 
     @property
+    def proved(self) -> dict[str, float]:
+        """Each limited quantity over its limit is at most this at every instant."""
+        bounds = [piece.timed.verification.proved for piece in self.pieces]
+        return {name: max(bound[name] for bound in bounds) for name in bounds[0]}
+
+    @property
     def half(self) -> float:
         """Of the way there [s]."""
         return sum(piece.duration for piece in self.there)

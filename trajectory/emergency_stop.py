@@ -5,7 +5,7 @@ acceleration and torque is linear in (u, x), as in Bobrow, Dubowsky and Gibson, 
 manipulators along specified paths", IJRR 1985:
 
     joint acceleration   q' u + q'' x
-    torque               (tau(p, 0, p') - c) u + (tau(p, p', p'') - c) x + c,  c = tau(p, 0, 0)
+    torque               i u + k x + c,  its parts by the rate, Coulomb friction in c (`torque_terms`)
     tool acceleration    |p' u + p'' x|, a disc
 
 with a dash for the derivative by tau. The pace takes the least u that they allow, all the way down. No other pace has
@@ -31,6 +31,7 @@ from trajectory.paced import PacedMotion, one_sided
 from trajectory.path import Array
 from trajectory.timed import TimedMotion
 from trajectory.timing import TimeLaw
+from trajectory.torque_terms import torque_by_rate
 from trajectory.verification import Verification, verify
 
 COARSE = 200  # steps to see about how long the braking is
@@ -118,10 +119,12 @@ def _rows(robot: Mechanism, pose: Array, first: Array, second: Array, limits: Li
     if acceleration is not None:
         rows.append((joints.first / acceleration, joints.second / acceleration, np.zeros_like(joints.first)))
     if torque is not None:
+        along = torque_by_rate(robot, payload, pose, first, second)
+        by_u = inverse_dynamics(robot, payload, pose, first, second + first) - sum(along)
+        # Friction as at full speed, without the viscous part, and none as at rest: so all that lies between.
         still = inverse_dynamics(robot, payload, pose, none, none)
-        by_u = inverse_dynamics(robot, payload, pose, none, first) - still
-        by_x = inverse_dynamics(robot, payload, pose, first, second) - still
-        rows.append((by_u / torque, by_x / torque, still / torque))
+        constants = (along.constant + along.linear, along.constant, still)
+        rows += [(by_u / torque, along.quadratic / torque, constant / torque) for constant in constants]
     by_u, by_x, still = (np.concatenate(part, axis=-1) for part in zip(*rows, strict=True))
     return by_u, by_x, still
 

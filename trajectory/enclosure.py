@@ -8,6 +8,7 @@ order after the other. So nothing is left between the samples.
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -17,16 +18,31 @@ from kinematics.box_program import BoxProgram
 from kinematics.dynamics import torques
 from kinematics.interval import enclose
 from kinematics.mechanism import Array
-from kinematics.motion import JointMotion, actuator_motion, derivatives_along
+from kinematics.motion import JointMotion, derivatives_along
 from kinematics.program import Program
-from trajectory.motion import Motion, PoseMotion
+from trajectory.motion import Motion, PoseMotion, motion_of
 from trajectory.timed import TimedMotion
 
+_ALL = (-np.inf, np.inf)
 _SLACK = 1e-12  # relative and absolute: far more than what evaluation in double arithmetic is off by
 
 
-def slack(robot: Mechanism, timed: TimedMotion, payload: float, low: Array, high: Array) -> Motion:
-    """Bounds of |f(t) - f(middle)| over each part, (k, ...), in the layout of the motion itself.
+class Slack(NamedTuple):
+    """How far a motion may be over parts of it from what it is in their middles.
+
+    Attributes:
+        motion: bounds of |f(t) - f(middle)|, (k, ...), in the layout of the motion itself; of |f(t)| - |f(middle)| for
+            the torque where friction changes its sign.
+        mean_torque: (k, m) by how much the mean of |torque| may exceed that in the middle: of the second order in the
+            parts' lengths, but where friction changes its sign.
+    """
+
+    motion: Motion
+    mean_torque: Array
+
+
+def slack(robot: Mechanism, timed: TimedMotion, payload: float, low: Array, high: Array) -> Slack:
+    """How far the motion may be over each part from what it is in its middle.
 
     Args:
         robot: any mechanism with this kind of pose.
@@ -42,21 +58,34 @@ def slack(robot: Mechanism, timed: TimedMotion, payload: float, low: Array, high
         steepest = np.abs(value) + away[0]
     bounds = [np.stack([value - d, value + d]) for value, d in zip(tool, away, strict=True)]
     boxes = np.concatenate([*bounds, np.stack([-snap, snap])], axis=-1)
-    slopes = np.abs(enclose(_slopes(robot, payload), *boxes)).max(axis=0)
-    found = half * np.nan_to_num(slopes, nan=np.inf)
+    least, most = (np.nan_to_num(v, nan=n) for v, n in zip(enclose(_slopes(robot, payload), *boxes), _ALL, strict=True))
+    found = half * np.maximum(np.abs(least), np.abs(most))
     count = len(robot.joint_names)
     *joints, torque = (found[:, k * count : (k + 1) * count] for k in range(5))
-    return Motion(PoseMotion(*away), JointMotion(*joints), torque + _friction_slack(robot, tool, joints[1]))
+    at_rest = (low <= 0.0) | (high >= timed.duration)
+    friction, unknown = _friction_slack(robot, tool, payload, joints, at_rest)
+    # Up to the middle the torque is at most the line of least slope through it, beyond it that of the largest.
+    uneven = half * (most - least)[:, -count:] / 4.0 + np.where(unknown, torque + friction, friction)
+    return Slack(Motion(PoseMotion(*away), JointMotion(*joints), torque + friction), uneven)
 
 
-def _friction_slack(robot: Mechanism, tool: PoseMotion, away: Array) -> Array:
-    """How far the friction may be from that in the middle, where a joint's speed is `away` from it."""
-    drives, count = robot.inertia.drive_train, away.shape[1]
+def _friction_slack(
+    robot: Mechanism, tool: PoseMotion, payload: float, joints: list[Array], at_rest: Array
+) -> tuple[Array, Array]:
+    """By how much friction may add to the size of the torque in the middle, and where its sign is not known, (k, m)."""
+    drives, count = robot.inertia.drive_train, joints[0].shape[1]
     coulomb, viscous = (drives.of_actuators(name, count) for name in ("coulomb", "viscous"))
     if not (coulomb.any() or viscous.any()):
-        return np.zeros_like(away)
-    speed = actuator_motion(robot, *tool).first
-    return viscous * away + np.where(np.abs(speed) <= away, 2.0 * coulomb, 0.0)
+        return np.zeros_like(joints[0]), np.zeros(joints[0].shape, dtype=bool)
+    motion = motion_of(robot, tool, payload)
+    speed, acceleration = motion.joints.first, motion.joints.second
+    own = drives.friction(speed)[0]
+    without, size = motion.torque - own, np.abs(motion.torque)
+    unknown = np.abs(speed) <= joints[1]
+    # From rest and to rest the speed keeps its sign where the acceleration does.
+    starting = at_rest[:, None] & (np.abs(acceleration) > joints[2])
+    most = np.where(starting, np.maximum(np.abs(without), size), np.abs(without) + coulomb)
+    return viscous * joints[1] + np.where(unknown, most - size, 0.0), unknown
 
 
 @lru_cache(maxsize=16)

@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics import InvalidValue, Mechanism
-from kinematics.dynamics import torques
+from kinematics.dynamics import friction, torques
 from kinematics.motion import derivatives_along
 from trajectory.arch import TOLERANCE, Arch
 from trajectory.errors import TimingFailed
@@ -38,7 +38,7 @@ def free_motion(robot: Mechanism, path: Path, limits: Limits, payload: float, in
     Args:
         robot: any mechanism with the path's kind of pose.
         path: an Adept cycle or its way back; its ends, its arch and the guess come from it.
-        limits: of joints and tool, with jerk.
+        limits: of joints and tool, with jerk; all are kept.
         payload: mass at the tool [kg].
         intervals: of equal time.
 
@@ -79,7 +79,8 @@ def _require_clear(arch: Arch, motion: PoseSpline) -> None:
 
 def _guess(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int) -> tuple[Array, Array, float]:
     """From toppra's law: the intervals' starts (k, 4 n) and the end (3 n,), by t / T, and the duration."""
-    law = time_optimal(robot, path, replace(limits, jerk=None), payload, 1000)
+    plain = replace(limits, jerk=None, position=None, stall_torque=None, no_load_speed=None, rms_torque=None)
+    law = time_optimal(robot, path, plain, payload, 1000)
     motion = law.at(np.linspace(0.0, law.duration, intervals + 1))
     velocity = motion.velocity * law.duration
     acceleration = np.gradient(velocity, 1.0 / intervals, axis=0)
@@ -99,8 +100,9 @@ def _program(robot: Mechanism, arch: Arch, limits: Limits, payload: float, inter
 def _constraints(robot: Mechanism, arch: Arch, limits: Limits, payload: float, intervals: int) -> IntervalConstraints:
     n = len(robot.pose_names)
     start, duration = ca.SX.sym("start", 4 * n), ca.SX.sym("duration")
-    limited, jerk = _limited(robot, limits, payload)
+    limited, jerk, squares = _limited(robot, limits, payload)
     rows: list[ca.SX] = []
+    mean = ca.SX(0, 1)
     low: list[float] = []
     high: list[float] = []
 
@@ -114,6 +116,8 @@ def _constraints(robot: Mechanism, arch: Arch, limits: Limits, payload: float, i
         rates = [rate / duration**order for order, rate in enumerate(state)]
         if share < 1.0:
             add(limited(*rates[:3]), -1.0, 1.0)
+            square = squares(*rates[:3]) / (len(_AT) * intervals)
+            mean = square if not mean.numel() else mean + square
         add(jerk(*rates), -1.0, 1.0)
     parts = math.ceil(_ARCH_AT / intervals)
     for part in range(parts):
@@ -121,7 +125,7 @@ def _constraints(robot: Mechanism, arch: Arch, limits: Limits, payload: float, i
         *sides, floor = arch.sides(pose[0], pose[1], pose[2])
         add(arch.outside(*sides), 1.0, np.inf)
         add(floor, 0.0, np.inf)
-    return IntervalConstraints(start, duration, ca.vertcat(*rows), np.array(low), np.array(high), ca.SX(0, 1))
+    return IntervalConstraints(start, duration, ca.vertcat(*rows), np.array(low), np.array(high), mean)
 
 
 def _within(start: ca.SX, t: float, n: int) -> list[ca.SX]:
@@ -130,14 +134,14 @@ def _within(start: ca.SX, t: float, n: int) -> list[ca.SX]:
     return [p + t * (v + t * (a / 2 + t * j / 6)), v + t * (a + t * j / 2), a + t * j, j]
 
 
-def _limited(robot: Mechanism, limits: Limits, payload: float) -> tuple[ca.Function, ca.Function]:
-    """Pose, velocity and acceleration -> what is kept between -1 and 1; and with the jerk -> the joints' jerk."""
+def _limited(robot: Mechanism, limits: Limits, payload: float) -> tuple[ca.Function, ca.Function, ca.Function]:
+    """What is kept between -1 and 1 at a pose, velocity and acceleration; the joints' jerk; squares of the torque."""
     model, count = robot.model(), len(robot.joint_names)
     rates = velocity, acceleration, jerk = [
         ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration", "jerk")
     ]
-    _, first, second, third = derivatives_along(model.drives @ model.inverse, model.pose, rates)
-    tau = torques(robot, payload, velocity, acceleration)
+    joints, first, second, third = derivatives_along(model.drives @ model.inverse, model.pose, rates)
+    tau = torques(robot, payload, velocity, acceleration) + friction(robot, first)
     rows: list[ca.SX] = []
     for name, values in (("speed", first), ("acceleration", second), ("torque", tau)):
         if (limit := limits.of_joints(name, count)) is not None:
@@ -145,12 +149,21 @@ def _limited(robot: Mechanism, limits: Limits, payload: float) -> tuple[ca.Funct
     for cap, rate in ((limits.tool_speed, velocity), (limits.tool_acceleration, acceleration)):
         if cap is not None:
             rows.append(ca.sumsqr(rate[: places(robot.pose_names)]) / cap**2)
+    if (ranges := limits.ranges(count)) is not None:
+        rows.append((2 * joints - ca.DM(ranges[0] + ranges[1])) / ca.DM(ranges[1] - ranges[0]))
+    stall, fastest = limits.of_joints("stall_torque", count), limits.of_joints("no_load_speed", count)
+    if stall is not None and fastest is not None:
+        rows += [tau / ca.DM(stall) + sign * first / ca.DM(fastest) for sign in (1.0, -1.0)]
+    rms = limits.of_joints("rms_torque", count)
+    square = ca.SX(0, 1) if rms is None else (tau / ca.DM(rms)) ** 2
     most = limits.of_joints("jerk", count)
     assert most is not None
     third = third / ca.DM(most)
     fixed = ca.SX(robot.geometry.vector())
-    of_numbers = [ca.substitute(v, model.geometry, fixed) for v in (ca.vertcat(*rows), third)]
+    inputs = [model.pose, velocity, acceleration]
+    limited, jerks, squares = (ca.substitute(v, model.geometry, fixed) for v in (ca.vertcat(*rows), third, square))
     return (
-        ca.Function("limited", [model.pose, velocity, acceleration], of_numbers[:1], {"cse": True}),
-        ca.Function("jerk", [model.pose, velocity, acceleration, jerk], of_numbers[1:], {"cse": True}),
+        ca.Function("limited", inputs, [limited], {"cse": True}),
+        ca.Function("jerk", [*inputs, jerk], [jerks], {"cse": True}),
+        ca.Function("squares", inputs, [squares], {"cse": True}),
     )

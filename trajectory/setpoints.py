@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from typing import Any
 
@@ -184,17 +184,18 @@ def robot_header(robot: Mechanism, limits: Limits) -> dict[str, Any]:
         "coordinates": (type(robot).__doc__ or "").splitlines()[0],
         "geometry": _spelled(robot.geometry.as_dict()),
         "geometry hash": robot.geometry.digest,
-        "inertia": str(robot.inertia),
+        "inertia": _spelled(asdict(robot.inertia)),
+        "joint ranges": _spelled(asdict(robot.ranges)),
     }
     header |= {f"limit {name}": value for name, value in limits.as_dict().items()}
     return header | {"conventions": list(CONVENTIONS), "assumptions": list(ASSUMPTIONS)}
 
 
 def _spelled(value: Any) -> Any:
-    """Plain data with words for infinite numbers, which JSON has not: a leg may be of any length."""
+    """Plain data with words for infinite numbers, which JSON has not: a joint may go any way."""
     if isinstance(value, dict):
         return {key: _spelled(entry) for key, entry in value.items()}
-    if isinstance(value, list):
+    if isinstance(value, list | tuple):
         return [_spelled(entry) for entry in value]
     return str(value) if isinstance(value, float) and math.isinf(value) else value
 

@@ -171,7 +171,8 @@ def _solve(grid: Array, bound: Array, rows: list[Coefficients], asked: dict[str,
     # toppra asks for a path, but all that its algorithm reads from it is the interval [0, 1].
     unit = SimplePath(np.array([0.0, 1.0]), np.array([[0.0], [1.0]]))
     # In a unit of time in which u and x are about 1: the solver's tolerances are absolute.
-    unit_squared = min([float(bound.max()), *(1.0 / float(np.abs(a).max()) for a, _, _ in rows)])
+    largest = [float(np.abs(a).max()) for a, _, _ in rows]  # 0 of a machine without masses
+    unit_squared = min([float(bound.max()), *(1.0 / a for a in largest if a > 0.0)])
     scaled = [(a * unit_squared, b * unit_squared, c) for a, b, c in rows]
     constraints = [SpeedBound(bound / unit_squared), *(SymmetricRows(r) for r in scaled)]
     problem = TOPPRA(constraints, unit, gridpoints=grid, solver_wrapper="seidel")

@@ -7,9 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics import Mechanism
+from kinematics.motion import JointMotion
 from trajectory.limits import Limits
-from trajectory.motion import Motion
-from trajectory.path import Array
+from trajectory.motion import Motion, PoseMotion
+from trajectory.path import Array, places
 
 
 class Use(NamedTuple):
@@ -23,7 +24,7 @@ class Use(NamedTuple):
     ratio: Array | None
 
 
-def uses(robot: Mechanism, motion: Motion, limits: Limits) -> dict[str, Use]:
+def uses(robot: Mechanism, motion: Motion, limits: Limits, slack: Motion | None = None) -> dict[str, Use]:
     """Each quantity by its name: those of the joints, the torque and the tool; position and line where limited.
 
     The ratio of "torque at speed" is |tau| / stall_torque + |q'| / no_load_speed, that of "joint position" the distance
@@ -33,34 +34,36 @@ def uses(robot: Mechanism, motion: Motion, limits: Limits) -> dict[str, Use]:
         robot: of the motion.
         motion: (..., m) samples.
         limits: of joints and tool.
+        slack: how far each sample may be from what it is; the most that it may use is then found.
     """
-    joints, torque = motion.joints, np.abs(motion.torque)
-    count = torque.shape[-1]
-    coordinates = len(robot.pose_names) - len(robot.rotations)
+    joints, tool, count = motion.joints, motion.tool, motion.torque.shape[-1]
+    more = slack or Motion(PoseMotion(*np.zeros(4)), JointMotion(*np.zeros(4)), np.zeros(1))
+    speed, torque = np.abs(joints.first) + more.joints.first, np.abs(motion.torque) + more.torque
 
     def of_joints(values: Array, field: str) -> Use:
-        return _against(np.abs(values), limits.of_joints(field, count))
+        return _against(values, limits.of_joints(field, count))
 
-    def of_tool(values: Array, limit: float | None) -> Use:
-        size = np.linalg.norm(values[..., :coordinates], axis=-1, keepdims=True)
-        return _against(size, None if limit is None else np.array([limit]))
+    def of_tool(values: Array, away: Array, limit: float | None) -> Use:
+        size = sum(np.linalg.norm(np.atleast_1d(v)[..., : places(robot.pose_names)], axis=-1) for v in (values, away))
+        return _against(np.asarray(size)[..., None], None if limit is None else np.array([limit]))
 
     found = {
-        "joint speed": of_joints(joints.first, "speed"),
-        "joint acceleration": of_joints(joints.second, "acceleration"),
+        "joint speed": of_joints(speed, "speed"),
+        "joint acceleration": of_joints(np.abs(joints.second) + more.joints.second, "acceleration"),
         "torque": of_joints(torque, "torque"),
-        "tool speed": of_tool(motion.tool.velocity, limits.tool_speed),
-        "tool acceleration": of_tool(motion.tool.acceleration, limits.tool_acceleration),
-        "joint jerk": of_joints(joints.third, "jerk"),
+        "tool speed": of_tool(tool.velocity, more.tool.velocity, limits.tool_speed),
+        "tool acceleration": of_tool(tool.acceleration, more.tool.acceleration, limits.tool_acceleration),
+        "joint jerk": of_joints(np.abs(joints.third) + more.joints.third, "jerk"),
     }
     if (ranges := limits.ranges(count)) is not None:
         middle, half = (ranges[1] + ranges[0]) / 2, (ranges[1] - ranges[0]) / 2
         away = joints.position - middle
-        found["joint position"] = Use(joints.position, middle + np.copysign(half, away), np.abs(away) / half)
+        ratio = (np.abs(away) + more.joints.position) / half
+        found["joint position"] = Use(joints.position, middle + np.copysign(half, away), ratio)
     stall, fastest = limits.of_joints("stall_torque", count), limits.of_joints("no_load_speed", count)
     if stall is not None and fastest is not None:
-        speed = np.abs(joints.first) / fastest
-        found["torque at speed"] = Use(torque, stall * (1.0 - speed), torque / stall + speed)
+        share = speed / fastest
+        found["torque at speed"] = Use(torque, stall * (1.0 - share), torque / stall + share)
     return found
 
 

@@ -3,13 +3,14 @@
 Nothing here uses the coefficients from which a law was made: the pose and its time derivatives come from the path and
 the law, the joints from the inverse model's derivatives, the torque from inverse dynamics. The joints' speed must also
 be the integral of their acceleration, and their position that of their speed: so a cusp between samples, where every
-sample looks innocent, and derivatives that are not the path's are found. Peaks are sampled: measured, not proven.
+sample looks innocent, and derivatives that are not the path's are found. Peaks are measured on the samples; where these
+keep the limits, `proof` bounds what is left between them.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from kinematics.drives import from_actuators
 from trajectory.limits import Limits
 from trajectory.motion import Motion, motion_of
 from trajectory.path import Array
+from trajectory.proof import proved_use
 from trajectory.timed import TimedMotion
 from trajectory.usage import Use, uses
 
@@ -55,7 +57,7 @@ class Peak(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Verification:
-    """What was measured.
+    """What was measured, and what was proved.
 
     Attributes:
         law: name of the law.
@@ -66,7 +68,8 @@ class Verification:
             largest speed and over the way of the joints.
         reach: the worst limb's margin [m]; negative or NaN fails.
         rms_torque: (m,) over the whole duration [N m or N].
-        rms_over_peak: (m,) each joint's RMS torque over its own peak.
+        rms_over_peak: (m,) each joint's RMS torque over its own peak; 0 where it bears none.
+        proved: each limited quantity over its limit is at most this at every instant; empty where a peak fails already.
         notes: what was left out, and why.
     """
 
@@ -77,6 +80,7 @@ class Verification:
     reach: float
     rms_torque: Array
     rms_over_peak: Array
+    proved: dict[str, float]
     notes: tuple[str, ...]
 
     @property
@@ -86,14 +90,14 @@ class Verification:
 
     @property
     def failures(self) -> dict[str, float]:
-        """What fails: peaks and residuals over their limits, and a reach margin [m]; NaN always fails."""
+        """What fails: peaks, proved bounds and residuals over their limits, a reach margin [m]; NaN always fails."""
         failed = {name: ratio for name, ratio in self.peak_over_limit.items() if not ratio <= 1.0}
         failed |= {p.quantity: math.nan for p in self.peaks if math.isnan(p.value)}
         over = {name: value / _TOLERANCES[name] for name, value in self.residuals.items()}
         failed |= {name: ratio for name, ratio in over.items() if not ratio <= 1.0}
         if not self.reach >= 0.0:
             failed["reach margin [m]"] = self.reach
-        return failed
+        return failed | {f"{name}, proved": bound for name, bound in self.proved.items() if not bound <= 1.0}
 
     @property
     def ok(self) -> bool:
@@ -101,19 +105,28 @@ class Verification:
         return not self.failures
 
     def rows(self) -> list[tuple[str, ...]]:
-        """A table: quantity, peak, limit, peak over limit, joint, time [s]."""
+        """A table: quantity, peak, limit, peak over limit, what that is proved to be at most, joint, time [s]."""
 
         def number(value: float | None) -> str:
             return "" if value is None else f"{value:.6g}"
 
-        return [
-            (p.quantity, number(p.value), number(p.limit), number(p.ratio), p.joint or "", number(p.time))
-            for p in self.peaks
-        ]
+        def row(p: Peak) -> tuple[str, ...]:
+            proved = number(self.proved.get(p.quantity))
+            return (
+                p.quantity,
+                number(p.value),
+                number(p.limit),
+                number(p.ratio),
+                proved,
+                p.joint or "",
+                number(p.time),
+            )
+
+        return [row(p) for p in self.peaks]
 
 
 def verify(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float) -> Verification:
-    """Measure a timed motion against its limits.
+    """Measure a timed motion against its limits, and prove what the samples show.
 
     Args:
         robot: any mechanism with the motion's kind of pose.
@@ -127,17 +140,20 @@ def verify(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float)
     times, tool = timed.within(sampling(timed))
     motion = motion_of(robot, tool, payload)
     peaks, notes = _peaks(robot, times, motion, limits)
+    peak = np.abs(motion.torque).max(axis=(0, 1))
     rms = np.sqrt(integrals(times, motion.torque**2).sum(axis=0) / timed.duration)
-    return Verification(
+    found = Verification(
         law=timed.name,
         duration=timed.duration,
         peaks=(*peaks, _rms_peak(robot, rms, limits.of_joints("rms_torque", rms.size))),
         residuals=_residuals(robot, timed, motion) | _integral_residuals(times, motion),
         reach=_least(robot.margin("reach", motion.tool.pose)),
         rms_torque=rms,
-        rms_over_peak=rms / np.abs(motion.torque).max(axis=(0, 1)),
+        rms_over_peak=np.divide(rms, peak, out=np.zeros_like(rms), where=rms != 0.0),
+        proved={},
         notes=notes,
     )
+    return found if found.failures else replace(found, proved=proved_use(robot, timed, limits, payload))
 
 
 def sampling(timed: TimedMotion) -> Array:

@@ -11,9 +11,7 @@ from tests.kinematics.test_heli4_jacobians import differences
 from tests.kinematics.test_motion import TIMES, pose_and_derivatives
 
 G = 9.80665
-HEAVY = Heli4Inertia(
-    drive=0.02, arm_mass=1.3, arm_centre=0.55, arm_factor=1.4, rod_pair_mass=0.4, plate_masses=(0.7, 0.3)
-)
+HEAVY = Heli4Inertia(drive=0.02, arm_mass=1.3, arm_centre=0.55, arm_factor=1.4, rod_mass=0.4, plate_masses=(0.7, 0.3))
 ROBOTS = pytest.mark.parametrize("robot", [Heli4(), Heli4(OBLIQUE, HEAVY)], ids=["prototype", "oblique and heavy"])
 
 
@@ -21,9 +19,9 @@ def potential(robot, payload, pose):
     """Weights times heights; half of each pair of rods hangs on the arm, half on the plate."""
     g, i, hand = robot.geometry, robot.inertia, ByHand(robot.geometry)
     q, pose = robot.inverse(pose), np.asarray(pose)
-    arms = (i.arm_mass * i.arm_centre + i.rod_pair_mass / 2) * g.arm_length * np.cos(q).sum(-1)
-    lower = (i.plate_masses[0] + payload + i.rod_pair_mass) * pose[..., 2]
-    upper = (i.plate_masses[1] + i.rod_pair_mass) * (pose[..., 2] + hand.pitch * pose[..., 3])
+    arms = (i.arm_mass * i.arm_centre + i.rod_mass / 2) * g.arm_length * np.cos(q).sum(-1)
+    lower = (i.plate_masses[0] + payload + i.rod_mass) * pose[..., 2]
+    upper = (i.plate_masses[1] + i.rod_mass) * (pose[..., 2] + hand.pitch * pose[..., 3])
     return G * (arms + lower + upper)
 
 
@@ -31,10 +29,10 @@ def kinetic(robot, payload, pose, velocity):
     g, i, hand = robot.geometry, robot.inertia, ByHand(robot.geometry)
     rates = (robot.inverse_jacobian(pose) @ velocity[..., None])[..., 0]
     swing = i.drive + i.arm_factor * i.arm_mass * (i.arm_centre * g.arm_length) ** 2
-    swing += i.rod_pair_mass / 2 * g.arm_length**2
+    swing += i.rod_mass / 2 * g.arm_length**2
     flat = (velocity[..., :2] ** 2).sum(-1)
-    lower = (i.plate_masses[0] + payload + i.rod_pair_mass) * (flat + velocity[..., 2] ** 2)
-    upper = (i.plate_masses[1] + i.rod_pair_mass) * (flat + (velocity[..., 2] + hand.pitch * velocity[..., 3]) ** 2)
+    lower = (i.plate_masses[0] + payload + i.rod_mass) * (flat + velocity[..., 2] ** 2)
+    upper = (i.plate_masses[1] + i.rod_mass) * (flat + (velocity[..., 2] + hand.pitch * velocity[..., 3]) ** 2)
     return (swing * (rates**2).sum(-1) + lower + upper + i.tool * velocity[..., 3] ** 2) / 2
 
 

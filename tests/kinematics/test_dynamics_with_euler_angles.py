@@ -5,7 +5,7 @@ import pytest
 
 from kinematics import GoughStewart
 from kinematics.dynamics import inverse_dynamics
-from kinematics.gough_stewart import GoughStewartInertia
+from kinematics.gough_stewart_geometry import GoughStewartInertia
 from kinematics.motion import actuator_motion
 from kinematics.orientation import rotation
 from tests.kinematics.test_heli4_jacobians import differences

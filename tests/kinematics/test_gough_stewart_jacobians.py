@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from kinematics import FviBounds, GoughStewart
 from kinematics.dynamics import GRAVITY, inverse_dynamics
-from kinematics.gough_stewart import GoughStewartInertia
+from kinematics.gough_stewart_geometry import GoughStewartInertia
 from kinematics.motion import joint_motion
 from tests.kinematics.gough_stewart_by_hand import (
     anywhere,

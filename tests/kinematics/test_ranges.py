@@ -130,6 +130,7 @@ def test_out_of_reach_there_is_no_room(kind: type[Mechanism]) -> None:
         (Redundant3T1R, {"passive": (1.0, 3.2)}, "passive"),
         (Redundant3T1R, {"passive": 1.0}, "passive"),
         (GoughStewart, {"rest": (0.0, 0.6)}, "rest"),
+        (GoughStewart, {"rest": "home"}, "rest"),
         (GoughStewart, {"rest": (0.0, 0.0, math.inf)}, "rest"),
     ],
 )

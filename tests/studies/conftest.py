@@ -1,6 +1,6 @@
 """A small mechanism that stands in for the real ones, and a complete study of it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar
@@ -8,6 +8,8 @@ from typing import Any, ClassVar
 import pytest
 
 import kinematics
+from kinematics.bodies import InertiaRecord
+from kinematics.ranges import RodRanges
 from tests.studies.command_line import SMALL, SmallRun, linkwright
 
 STUDY = """\
@@ -67,6 +69,19 @@ jerk = 1e5
 margins = ["J_x", "fvi"]
 tolerance = 0.02
 most_boxes = 1000
+
+[inertia]
+arm_mass = 0.8
+plate_masses = [0.5, 0.6]
+lead_mm = 12
+rod_middle = 0.25
+[inertia.drive_train]
+gear_ratio = 5
+coulomb = [1, 2, 3, 4]
+
+[ranges]
+joints_deg = [[0, 210], [0, 210], [0, 210], [10, 220]]
+passive_deg = [50, 60]
 """
 
 MINIMAL = """\
@@ -88,6 +103,8 @@ def length(default: Any, minimum: float | None = None) -> Any:
 class Fake:
     """As much of a mechanism as a study file speaks of."""
 
+    joint_names: ClassVar[tuple[str, ...]] = ("q1", "q2", "q3", "q4")
+    joint_units: ClassVar[tuple[str, ...]] = ("rad",) * 4
     pose_names: ClassVar[tuple[str, ...]] = ("x", "y", "z", "theta")
     counts_turns: ClassVar[bool] = False
     margins: ClassVar[tuple[str, ...]] = ("J_q", "J_x", "fvi", "reach")
@@ -100,6 +117,15 @@ class Fake:
         pitch: float = field(default=0.05, metadata={"dimension": "length_per_turn"})
         azimuths: tuple[float, ...] = field(default=(0.0, 1.0, 2.0, 3.0), metadata={"dimension": "angle"})
         points: tuple[tuple[float, ...], ...] = length(((0.0, 1.0), (1.0, 0.0), (1.0, 1.0)))
+
+    @dataclass(frozen=True)
+    class Inertia(InertiaRecord):
+        dimensions: ClassVar[Mapping[str, str]] = {"lead": "length_per_turn"}
+        arm_mass: float = 0.9
+        plate_masses: tuple[float, float] = (0.55, 0.55)
+        lead: float = 0.01
+
+    Ranges = RodRanges
 
 
 @pytest.fixture(autouse=True)

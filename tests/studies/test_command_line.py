@@ -9,8 +9,16 @@ from importlib.metadata import distribution, packages_distributions
 from pathlib import Path
 
 import pytest
+from typer.core import TyperGroup
+from typer.main import get_command
+from typer.testing import CliRunner
 
+from studies.cli import app
 from tests.studies.command_line import SMALL, linkwright
+
+GROUP = get_command(app)
+assert isinstance(GROUP, TyperGroup)
+COMMANDS = GROUP.commands
 
 
 @pytest.fixture(autouse=True)
@@ -19,12 +27,32 @@ def fake_mechanism() -> None:
 
 
 def test_help_loads_none_of_the_heavy_libraries() -> None:
-    code = "import sys, studies.cli; print([m for m in ('casadi','numba','numpy','matplotlib') if m in sys.modules])"
-    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
-    shown = linkwright("--help")
-    assert shown.returncode == 0
-    for command in ("list", "run", "optimise", "map", "certify", "trajectory", "report", "export", "check"):
-        assert command in shown.stdout
+    heavy = ("casadi", "kinematics", "matplotlib", "numba", "numpy", "pydantic", "scipy")
+    code = f"""
+import sys, studies.cli
+sys.argv = ["linkwright", "--help"]
+try:
+    studies.cli.main()
+finally:
+    print([name for name in {heavy} if name in sys.modules])
+"""
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert shown.endswith("[]\n")
+    for command in COMMANDS:
+        assert command in shown
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_commands_help_has_examples_that_the_command_takes(command: str) -> None:
+    shown = CliRunner().invoke(app, [command, "--help"])
+    assert shown.exit_code == 0
+    parser = COMMANDS[command]
+    examples = [line.split() for line in (parser.help or "").splitlines() if line.startswith("linkwright ")]
+    assert examples
+    for example in examples:
+        assert " ".join(example) in " ".join(shown.output.split())
+        assert example[1] == command
+        parser.make_context(command, example[2:])
 
 
 def test_list_shows_the_mechanisms_and_the_studies() -> None:

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from kinematics.errors import InvalidValue
 from studies.cli import app
 from studies.errors import StudyError
-from studies.schema import FILES
+from studies.schema_trajectory import FILES
 from tests.studies.test_command_line import SMALL
 from trajectory.drive_files import FORMATS
 

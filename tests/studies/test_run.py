@@ -7,7 +7,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -95,21 +94,26 @@ def test_a_given_geometry_that_fails_its_requirement_writes_nothing(tmp_path: Pa
         assert not list((tmp_path / "out").iterdir())
 
 
-def test_an_interrupt_ends_a_run_at_once_even_inside_the_solver(tmp_path: Path) -> None:
-    call = [
-        sys.executable,
-        "-c",
-        "from studies.cli import main; main()",
-        "run",
-        "heli4",
-        "--out",
-        str(tmp_path / "out"),
-    ]
-    for wait in (3.0, 6.0):
-        running = subprocess.Popen(call, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        time.sleep(wait)
+LOUD = """
+import casadi
+solver = casadi.nlpsol
+casadi.nlpsol = lambda name, plugin, nlp, options: solver(name, plugin, nlp, options | {"ipopt.print_level": 5})
+from studies.cli import main
+main()
+"""
+
+
+@pytest.mark.parametrize("after", [0, 1])
+def test_an_interrupt_ends_a_run_at_once_even_inside_the_solver(tmp_path: Path, after: int) -> None:
+    """Once IPOPT has begun to iterate, and ten iterations or a problem later."""
+    call = [sys.executable, "-u", "-c", LOUD, "run", "heli4", "--out", str(tmp_path / "out")]
+    with subprocess.Popen(call, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        assert running.stdout is not None
+        tables = (line for line in running.stdout if line.startswith("iter"))
+        for _ in range(after + 1):
+            next(tables)
         running.send_signal(signal.SIGINT)
-        _, error = running.communicate(timeout=20)
-        assert running.returncode == 130
-        assert "interrupted" in error
+        _, error = running.communicate(timeout=60)
+    assert running.returncode == 130
+    assert "interrupted" in error
     assert not list((tmp_path / "out").iterdir())

@@ -24,7 +24,14 @@ class Straight:
         s = np.asarray(s, dtype=float)[..., None]
         direction = np.broadcast_to(self.direction, (*s.shape[:-1], 4))
         none = np.zeros_like(direction)
-        return (self.start + s * self.direction, direction, none, none)[: order + 1]
+        return (self.start + s * self.direction, direction, none, none, none)[: order + 1]
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        return (0.0, self.length)
+
+    def steepest_third(self, s: np.ndarray) -> np.ndarray:
+        return np.zeros((s.size, 4))
 
     def as_dict(self) -> dict[str, object]:
         return {"length": self.length}
@@ -50,6 +57,15 @@ class Joined:
         first = self.first.evaluate(np.minimum(s, self.first.length), order)
         second = self.second.evaluate(np.clip(s - self.first.length, 0.0, self.second.length), order)
         return tuple(np.where(in_first, a, b) for a, b in zip(first, second, strict=True))
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        return (*self.first.knots, *(self.first.length + s for s in self.second.knots[1:]))
+
+    def steepest_third(self, s: np.ndarray) -> np.ndarray:
+        first = self.first.steepest_third(np.minimum(s, self.first.length))
+        second = self.second.steepest_third(np.clip(s - self.first.length, 0.0, self.second.length))
+        return np.where((s <= self.first.length)[:, None], first, second)
 
     def as_dict(self) -> dict[str, object]:
         return {}

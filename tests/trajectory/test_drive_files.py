@@ -24,7 +24,7 @@ from trajectory.drive_files.cia402 import interpolation_time
 
 PERIOD = 1e-3
 DRIVE = Drive(increments=2**20, gear=9.0)
-ROUNDED = 0.5e-9 * (1 + 1e-6)  # of the text formats, in degrees or millimetres
+ROUNDED = 0.5e-9 + 1e-12  # of the text formats, in degrees or millimetres; and double arithmetic on thousands of them
 
 
 @pytest.fixture(scope="module")

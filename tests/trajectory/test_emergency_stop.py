@@ -9,6 +9,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from kinematics import Heli4, InvalidValue, Peppermill
+from kinematics.drive_train import DriveTrain
 from trajectory import (
     AdeptCycle,
     Cycle,
@@ -131,3 +132,13 @@ def test_where_nothing_moves_nothing_is_stopped(robot: Heli4, cycle: Cycle, limi
     motion = cycle.pieces[0].motion
     with pytest.raises(InvalidValue, match="start of an emergency stop"):
         emergency_stop(robot, motion, share * motion.duration, limits, 1.0)
+
+
+@pytest.mark.parametrize("drives", [{"coulomb": 6.0}, {"coulomb": 4.0, "viscous": 0.5}])
+def test_a_stop_against_friction_keeps_the_limits_down_to_rest(path: AdeptCycle, drives: dict[str, float]) -> None:
+    rough, limits = Heli4(inertia=Heli4.Inertia(drive_train=DriveTrain(**drives))), Limits(speed=20.0, torque=127.0)
+    smooth = time_optimal(Heli4(), path, Limits(speed=20.0, torque=100.0), 1.0, 1000)
+    for share in (0.1, 0.3, 0.5, 0.7, 0.9):
+        stop = emergency_stop(rough, smooth, share * smooth.duration, limits, 1.0)
+        assert stop.verification.peak_over_limit["torque"] <= 1.0
+        assert stop.duration <= (1.0 - share) * smooth.duration * 1.01

@@ -42,6 +42,15 @@ def test_the_tool_keeps_clear_of_the_arch_and_a_shrunken_motion_does_not(path: A
         _require_clear(Arch.of(path), low)
 
 
+def test_the_thermal_limit_the_speed_torque_line_and_the_ranges_are_kept_too(robot: Heli4, path: AdeptCycle) -> None:
+    limits = replace(JERK, rms_torque=95.0, stall_torque=180.0, no_load_speed=40.0, position=(0.8, 2.6))
+    found = free_motion(robot, path, limits, 1.0, 16)
+    ratios = verify(robot, found, limits, 1.0).peak_over_limit
+    assert set(ratios) == {"joint speed", "torque", "joint jerk", "joint position", "torque at speed", "rms torque"}
+    assert max(ratios.values()) < 1.01
+    assert ratios["rms torque"] > 0.99
+
+
 def test_the_way_back_takes_as_long_and_starts_where_the_way_there_ends(
     robot: Heli4, path: AdeptCycle, motion: PoseSpline
 ) -> None:

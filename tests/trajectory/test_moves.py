@@ -73,8 +73,8 @@ def test_its_speeds_and_torques_follow_from_its_motion(robot: Heli4, approach: M
     points.require_consistent(robot)
     power = (points.torque * points.speed).sum(axis=1)
     i, g = robot.inertia, robot.geometry
-    platform = sum(i.plate_masses) + 1.0 + 2 * i.rod_pair_mass
-    arm = (i.arm_mass * i.arm_centre + i.rod_pair_mass / 2) * g.arm_length
+    platform = sum(i.plate_masses) + 1.0 + 2 * i.rod_mass
+    arm = (i.arm_mass * i.arm_centre + i.rod_mass / 2) * g.arm_length
     fall = platform * (points.pose[-1, 2] - points.pose[0, 2])
     swing = arm * (np.cos(points.joints[-1]) - np.cos(points.joints[0])).sum()
     assert power.sum() * 1e-3 == pytest.approx(9.80665 * (fall + swing), rel=2e-3)

@@ -142,8 +142,9 @@ def test_the_header_says_what_the_set_points_are_for(file: Path, robot: Heli4, c
     assumptions = " ".join(header["assumptions"])
     assert "assumed drive set" in assumptions
     assert "rod_middle" in assumptions
-    assert "rod_middle=0.0" in header["inertia"]
-    assert "coulomb=0.0, viscous=0.0" in header["inertia"]
+    assert header["inertia"]["rod_middle"] == 0.0
+    assert header["inertia"]["drive_train"]["coulomb"] == header["inertia"]["drive_train"]["viscous"] == 0.0
+    assert header["joint ranges"] == {"joints": [0.0, 3.8], "passive": [1.0, 1.0]}
     lines = file.read_text().splitlines()
     above = next(k for k, line in enumerate(lines) if not line.startswith("#"))
     assert all(line.startswith("# ") for line in lines[:above])

@@ -12,6 +12,7 @@ from kinematics.dynamics import inverse_dynamics
 from trajectory import AdeptCycle, Limits, LimitsExceeded, TimedPath, repair, torque_terms, verify
 from trajectory.torque_terms import torque_along, torque_by_rate
 
+CLOSE = 5e-5  # of the least stretch, which a proof between the samples may add
 FREE = Limits(speed=1e6)
 ROBOTS = [Heli4(), Peppermill(), Redundant3T1R()]
 
@@ -65,9 +66,9 @@ def test_the_rms_torque_is_repaired_by_the_least_stretch(robot: Heli4, timed: Ti
     limit = verify(robot, timed, FREE, 1.0).rms_torque / np.array([0.9, 1.0, 1.009, 1.005])
     limits = replace(FREE, rms_torque=tuple(limit))
     mended = repair(robot, timed, limits, 1.0)
-    assert mended.verification.peak_over_limit["rms torque"] == pytest.approx(1.0, abs=1e-9)
+    assert 1.0 - 2 * CLOSE < mended.verification.peak_over_limit["rms torque"] <= 1.0
     assert 1.0 < mended.factor < 1.009
-    assert not verify(robot, timed.stretched(1 + 0.999 * (mended.factor - 1)), limits, 1.0).ok
+    assert not verify(robot, timed.stretched(mended.factor - CLOSE), limits, 1.0).ok
 
 
 def test_the_speed_torque_line_is_repaired_by_the_least_stretch(robot: Heli4, timed: TimedPath) -> None:
@@ -76,9 +77,9 @@ def test_the_speed_torque_line_is_repaired_by_the_least_stretch(robot: Heli4, ti
     k = ratio / 1.009
     limits = replace(FREE, stall_torque=150.0 * k, no_load_speed=25.0 * k)  # every ratio over k
     mended = repair(robot, timed, limits, 1.0)
-    assert mended.verification.peak_over_limit["torque at speed"] == pytest.approx(1.0, abs=1e-9)
+    assert 1.0 - 2 * CLOSE < mended.verification.peak_over_limit["torque at speed"] <= 1.0
     assert 1.0 < mended.factor < 1.009
-    assert not verify(robot, timed.stretched(1 + 0.999 * (mended.factor - 1)), limits, 1.0).ok
+    assert not verify(robot, timed.stretched(mended.factor - CLOSE), limits, 1.0).ok
 
 
 def test_the_line_is_measured_as_it_is_written(robot: Heli4, timed: TimedPath) -> None:

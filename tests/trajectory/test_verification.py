@@ -24,6 +24,8 @@ from trajectory import (
 )
 from trajectory.verification import sampling
 
+CLOSE = 5e-5  # of the least stretch, which a proof between the samples may add
+
 
 @pytest.fixture(scope="module")
 def repaired(robot: Heli4, limits: Limits, timed: TimedPath) -> Repaired:
@@ -81,8 +83,8 @@ def test_work_of_the_drives_is_the_gain_of_height(robot: Heli4, path: AdeptCycle
     power = (motion.torque * motion.joints.first).sum(axis=-1)
     work = ((power * simpson).sum(axis=1) * np.diff(timed.times)).sum()
     g, i = robot.geometry, robot.inertia
-    climb = (i.plate_masses[1] + i.rod_pair_mass) * g.pitch * path.turn / (2 * math.pi)
-    arm = (i.arm_mass * i.arm_centre + i.rod_pair_mass / 2) * g.arm_length
+    climb = (i.plate_masses[1] + i.rod_mass) * g.pitch * path.turn / (2 * math.pi)
+    arm = (i.arm_mass * i.arm_centre + i.rod_mass / 2) * g.arm_length
     start, end = robot.inverse(path.evaluate(np.array([0.0, path.length]), 0)[0])
     gain = GRAVITY * (climb + arm * (np.cos(end) - np.cos(start)).sum())
     assert work == pytest.approx(gain, abs=1e-6)
@@ -91,12 +93,13 @@ def test_work_of_the_drives_is_the_gain_of_height(robot: Heli4, path: AdeptCycle
 def test_the_reference_keeps_its_limits_after_a_small_repair(repaired: Repaired) -> None:
     assert 1.0 <= repaired.factor < 1.004
     assert repaired.verification.ok
-    assert max(repaired.verification.peak_over_limit.values()) == pytest.approx(1.0, abs=1e-9)
+    assert 1.0 - 2 * CLOSE < max(repaired.verification.peak_over_limit.values()) <= 1.0
+    assert 1.0 - 2 * CLOSE < max(repaired.verification.proved.values()) <= 1.0
     assert repaired.motion.duration == pytest.approx(repaired.before.duration * repaired.factor)
 
 
 def test_the_repair_is_the_smallest_stretch(robot: Heli4, limits: Limits, timed: TimedPath, repaired: Repaired) -> None:
-    less = timed.stretched(1 + 0.999 * (repaired.factor - 1))
+    less = timed.stretched(repaired.factor - CLOSE)
     assert not verify(robot, less, limits, 1.0).ok
 
 
@@ -108,7 +111,7 @@ def test_each_kind_of_limit_is_repaired_by_its_own_power(robot: Heli4, smooth: T
     limits = replace(Limits(speed=1e6), **{field: peak / 1.009})
     mended = repair(robot, smooth, limits, 1.0)
     power = {"speed": 1, "acceleration": 2, "jerk": 3}[field.removeprefix("tool_")]
-    assert mended.factor == pytest.approx(1.009 ** (1 / power), rel=1e-6)
+    assert 0.0 <= mended.factor - 1.009 ** (1 / power) < CLOSE
 
 
 def test_a_law_within_its_limits_is_left_as_it_is(robot: Heli4, smooth: TimedPath) -> None:
@@ -263,6 +266,7 @@ def test_a_peak_says_where_and_when(repaired: Repaired) -> None:
     torque = next(p for p in found.peaks if p.quantity == "torque")
     assert torque.joint in ("q1", "q2", "q3", "q4")
     assert 0 <= torque.time <= repaired.motion.duration
-    assert torque.value == pytest.approx(127.0)
-    assert found.rows()[2][:2] == ("torque", "127")
-    assert all(len(row) == 6 for row in found.rows())
+    assert torque.value == pytest.approx(127.0, rel=2 * CLOSE)
+    assert found.rows()[2][0] == "torque"
+    assert float(found.rows()[2][3]) <= float(found.rows()[2][4]) <= 1.0
+    assert all(len(row) == 7 for row in found.rows())

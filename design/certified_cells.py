@@ -1,0 +1,108 @@
+"""The cells of a section over which a margin is proved: quarters, cut where the proof fails.
+
+A lower bound of what holds, as in `certified`.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from design.branch_and_bound import search
+from design.certificate import Certificate, answer, first_failing
+from design.certified import CertifiedRegion
+from design.errors import InvalidSection
+from design.index import index_of
+from design.lower_bounds import LowerBounds
+from design.maps import Map, map_of
+from design.region import Box, Region
+from design.section import Section
+from design.symmetry import mirrors_of
+from kinematics import FviBounds, Mechanism
+from kinematics.errors import InvalidValue
+
+Array = np.ndarray
+DEPTH = 7  # at most 2^7 cells along each axis
+MOST_BOXES_A_CELL = 100_000
+
+
+def certified_cells(
+    robot: Mechanism,
+    region: Region,
+    axes: tuple[str, str],
+    margin: str,
+    *,
+    at_least: float,
+    depth: int = DEPTH,
+    bounds: FviBounds | None = None,
+    characteristic_length: float | None = None,
+    most_boxes: int = MOST_BOXES_A_CELL,
+) -> CertifiedRegion:
+    """The cells of a plane over which the margin is proved for all values of the other coordinates.
+
+    The plane is cut into quarters: a cell is tried where a map of its corners, and of those within it, finds nothing
+    below the bound; what is not proved is cut again, down to the smallest cells.
+
+    Args:
+        robot: the mechanism with its geometry.
+        region: a box; its other coordinates hold as a whole for each cell.
+        axes: the two coordinates of the plane.
+        margin, at_least, bounds, characteristic_length: as in `certify`.
+        depth: the smallest cells are the region's sides over 2^depth.
+        most_boxes: of each attempt.
+
+    Raises:
+        InvalidRegion, InvalidValue: see `certify`.
+        InvalidSection: see `Section.check`, or the region is not a box.
+    """
+    _check(robot, region, margin, at_least, depth)
+    started, nodes = time.perf_counter(), 2**depth + 1
+    fvi_bounds = bounds or robot.fvi_bounds
+    length = robot.characteristic_length if characteristic_length is None else float(characteristic_length)
+    index = index_of(robot, margin, fvi_bounds, length)
+    chart = map_of(index, Section(region, axes), robot.pose_names, (nodes, nodes))
+    lower = LowerBounds(robot, region, margin, at_least, fvi_bounds, length)
+
+    def failing(poses: Array) -> Array | None:
+        return first_failing(robot, margin, poses, at_least, fvi_bounds, length)
+
+    def attempt(cell: Box) -> Certificate:
+        mirrors = mirrors_of(robot, cell, margin)
+        found = search(lower, cell, mirrors, robot.pose_names, failing, most_boxes, lambda _: None)
+        return answer(robot, cell, mirrors, margin, at_least, fvi_bounds, length, found)
+
+    holds = chart.goodness >= at_least  # NaN is not
+    cells, proved, left, boxes = [(0, 0, nodes - 1)], [], [np.empty((0, 2, len(robot.pose_names)))], 0
+    while cells:
+        column, row, size = cells.pop()
+        if holds[row : row + size + 1, column : column + size + 1].all():
+            found = attempt(_cell(region, axes, chart, column, row, size))
+            boxes += found.boxes
+            if found.status == "proved":
+                proved.append(found)
+                continue
+            if size == 1 and found.status == "undecided":
+                left.append(found.left)
+        if size > 1:
+            half = size // 2
+            cells += [(column + i * half, row + j * half, half) for i in (0, 1) for j in (0, 1)]
+    return CertifiedRegion(margin, at_least, tuple(proved), boxes, np.concatenate(left), time.perf_counter() - started)
+
+
+def _check(robot: Mechanism, region: Region, margin: str, at_least: float, depth: int) -> None:
+    if not isinstance(region, Box):
+        raise InvalidSection("cells", repr(region), "a Box; a Cylinder has `certified_cylinder`")
+    if not 0 <= depth <= 10:
+        raise InvalidValue("depth", depth, "a whole number from 0 to 10")
+    if not np.isfinite(at_least):
+        raise InvalidValue("at_least", at_least, "a finite number")
+    if margin not in robot.margins:
+        raise InvalidValue(f"{type(robot).__name__} margin", margin, f"one of {', '.join(robot.margins)}")
+
+
+def _cell(region: Region, axes: tuple[str, str], chart: Map, column: int, row: int, size: int) -> Box:
+    """The region between two nodes of the chart along each of both axes."""
+    sides = chart.first[[column, column + size]], chart.second[[row, row + size]]
+    cut = {name: (float(a), float(b)) for name, (a, b) in zip(axes, sides, strict=True)}
+    return Box(**{**region.intervals, **cut})

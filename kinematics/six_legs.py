@@ -1,0 +1,87 @@
+"""A platform of six freedoms on six legs, each of which has a length that the joints determine.
+
+Pose [x, y, z, roll, pitch, yaw] with R = Rz(yaw) Ry(pitch) Rx(roll); twists are (v of the tool point, omega) in the
+base's frame. The legs are a Gough-Stewart platform's own, or a Hexa's rods on the elbows that its arms place.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from kinematics.bodies import Bodies, Particle
+from kinematics.gough_stewart_forward import ForwardSolution, solve_forward
+from kinematics.mechanism import Array, Mechanism
+
+
+class SixLegs(Mechanism):
+    """What the Gough-Stewart platform and the Hexa share."""
+
+    geometry: Any
+    inertia: Any
+    pose_names = ("x", "y", "z", "roll", "pitch", "yaw")
+    joint_names = ("q1", "q2", "q3", "q4", "q5", "q6")
+    rotations = (3, 4, 5)
+
+    @property
+    def characteristic_length(self) -> float:
+        """Mean distance of the B_i from their centroid [m]."""
+        points = np.array(self.geometry.platform_points)
+        return float(np.linalg.norm(points - points.mean(axis=0), axis=1).mean())
+
+    @property
+    @abstractmethod
+    def initial_pose(self) -> Array:
+        """(6,) where `forward` starts unless told otherwise."""
+
+    @abstractmethod
+    def leg_errors(self, pose: Array, joints: Array) -> tuple[Array, Array]:
+        """(k, 6) what each leg lacks to have its length [m], and the legs' inverse Jacobian (k, 6, 6) [8.20]."""
+
+    @abstractmethod
+    def leg_sizes(self, joints: Array) -> tuple[Array, Array]:
+        """(k,) mean leg length, and the largest number that rounding of an error comes from [m]."""
+
+    @staticmethod
+    def rotation(pose: ca.SX) -> ca.SX:
+        """(3, 3) R = Rz(yaw) Ry(pitch) Rx(roll)."""
+        (cr, cp, cy), (sr, sp, sy) = ([f(pose[3 + k]) for k in range(3)] for f in (ca.cos, ca.sin))
+        return ca.vertcat(
+            ca.horzcat(cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
+            ca.horzcat(sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
+            ca.horzcat(-sp, cp * sr, cp * cr),
+        )
+
+    @staticmethod
+    def pose_rate_map(pose: ca.SX) -> ca.SX:
+        """Euler-angle rates from omega; not defined where the pitch is a quarter turn."""
+        cp, sp, cy, sy = ca.cos(pose[4]), ca.sin(pose[4]), ca.cos(pose[5]), ca.sin(pose[5])
+        rates = ca.vertcat(
+            ca.horzcat(cy / cp, sy / cp, 0), ca.horzcat(-sy, cy, 0), ca.horzcat(cy * sp / cp, sy * sp / cp, 1)
+        )
+        return ca.diagcat(ca.SX.eye(3), rates)
+
+    def platform_bodies(self, pose: ca.SX, points: ca.SX, payload: float, bodies: Bodies) -> None:
+        """Adds the platform, in six equal particles at the B_i (3, 6), and the payload at the tool point."""
+        share = self.inertia.platform_mass / 6
+        bodies.particles.extend(Particle("platform", share, points[:, i]) for i in range(6))
+        bodies.particles.append(Particle("platform", payload, pose[:3]))
+
+    def forward(self, joints: Array, start: Array | None = None) -> Array:
+        """(..., 6) -> (..., 6): Newton's method from a start near, NaN where it did not converge; [8.6.4.2].
+
+        From the default start a far pose may end in another assembly mode; give `start` where the pose is about known.
+
+        Args:
+            joints: [m or rad].
+            start: (..., 6) the current or last pose; `initial_pose` if not given.
+        """
+        return self.solve_forward(joints, start).pose
+
+    def solve_forward(self, joints: Array, start: Array | None = None, iterations: int = 30) -> ForwardSolution:
+        """As `forward`, and says where it converged, in how many steps and with which error."""
+        begin = self._poses(self.initial_pose if start is None else start)
+        return solve_forward(self, *self._together(self._joints(joints), begin), iterations)

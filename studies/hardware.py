@@ -1,0 +1,83 @@
+"""The masses, drives and joint ranges that a study gives its mechanism: keys, faults, and the records that compute."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import Field, fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinematics.drive_train import DriveTrain
+from kinematics.errors import InvalidValue
+from studies import schema_hardware
+from studies.errors import KeyPath
+from studies.mechanisms import mechanism_class
+from studies.schema_base import table_of
+from studies.units import Dimension, Key, Table
+
+if TYPE_CHECKING:
+    from kinematics import InertiaRecord, Mechanism
+    from kinematics.ranges import JointRanges
+    from studies.schema import Study
+
+_WORDS = {
+    "passive": "two angles above 0, at most half a turn: at the drives' ends of the rods, at the platform's",
+    "rod_middle": "a share from 0 to 1",
+    "screw_lead": "a number above 0",
+}
+_JOINTS: dict[tuple[str, ...], Dimension] = {("m",): Dimension.LENGTH, ("rad",): Dimension.ANGLE}
+
+
+def inertia_of(study: Study) -> InertiaRecord:
+    """The mechanism's masses with the study's own in their places."""
+    masses: dict[str, Any] = dict(study.inertia.masses)
+    drive_train = DriveTrain(**study.inertia.drive_train.model_dump(exclude_none=True))
+    return mechanism_class(study.mechanism).Inertia(**masses, drive_train=drive_train)
+
+
+def ranges_of(study: Study) -> JointRanges:
+    """The mechanism's joint ranges with the study's own in their places."""
+    ranges: dict[str, Any] = dict(study.ranges)
+    return mechanism_class(study.mechanism).Ranges(**ranges)
+
+
+def hardware_tables(mechanism: type[Mechanism]) -> dict[str, Table]:
+    """The keys of `[inertia]` and `[ranges]`."""
+    masses = {f.name: _key(f, mechanism.Inertia.dimensions, " >= 0") for f in fields(mechanism.Inertia)}
+    ranges = {f.name: _key(f, mechanism.Ranges.dimensions) for f in fields(mechanism.Ranges)}
+    unit = _JOINTS.get(tuple(sorted(set(mechanism.joint_units))), Dimension.NONE)
+    joints = Key(f"finite low < high, once or for each of {len(mechanism.joint_names)} joints", unit)
+    return {
+        "inertia": Table({**masses, **table_of(schema_hardware.Inertia).keys}),
+        "ranges": Table(ranges | {"joints": joints}),
+    }
+
+
+def _key(field: Field[Any], dimensions: Mapping[str, str], more: str = "") -> Key:
+    shape = np.shape(field.default)  # type: ignore[arg-type]
+    dimension = Dimension(dimensions.get(field.name, "none"))
+    count = f"{shape[0]} finite numbers" if shape else "a finite number"
+    return Key(_WORDS.get(field.name, f"{count}{more}"), dimension)
+
+
+def hardware_faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:
+    """The paths of `data` (in SI) that the mechanism's records refuse, each value by itself."""
+    count, inertia = len(mechanism.joint_names), _table(data, "inertia")
+    masses = {name: value for name, value in inertia.items() if name != "drive_train"}
+    of_records: list[tuple[KeyPath, type[Any], Mapping[str, Any]]] = [
+        (("ranges",), mechanism.Ranges, _table(data, "ranges")),
+        (("inertia",), mechanism.Inertia, masses),
+        (("inertia", "drive_train"), DriveTrain, _table(inertia, "drive_train")),
+    ]
+    for path, record, values in of_records:
+        for name, value in values.items():
+            try:
+                record(**{name: value}).check(count)
+            except InvalidValue:
+                yield (*path, name)
+
+
+def _table(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    table = data.get(name)
+    return table if isinstance(table, dict) else {}

@@ -1,0 +1,36 @@
+"""The machine beside its geometry: masses, drives, joint ranges; what is left out is the mechanism's own."""
+
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from studies.schema_base import Model, gathered, table_of
+from studies.units import Key
+
+Numbers = float | tuple[float, ...]
+Ranges = dict[str, Numbers | tuple[tuple[float, float], ...]]
+"""By the fields of the mechanism's `Ranges` [m or rad]."""
+
+
+class DriveTrain(Model):
+    """What stands behind each actuator, as in `kinematics.DriveTrain`; None for its default."""
+
+    gear_ratio: Annotated[
+        Numbers | None, Key("a number > 0, or one a joint (rad of the motor for one rad, or one m, of the joint)")
+    ] = None
+    motor_inertia: Annotated[Numbers | None, Key("a number >= 0, or one a joint (kg m^2)")] = None
+    coulomb: Annotated[Numbers | None, Key("a number >= 0, or one a joint (N m, or N)")] = None
+    viscous: Annotated[Numbers | None, Key("a number >= 0, or one a joint (N m s/rad, or N s/m)")] = None
+
+
+class Inertia(Model):
+    """What moves."""
+
+    masses: dict[str, Numbers] = Field(default_factory=dict)
+    """By the fields of the mechanism's `Inertia` [SI]."""
+    drive_train: Annotated[DriveTrain, table_of(DriveTrain)] = DriveTrain()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _gather_masses(cls, data: Any) -> Any:
+        return gathered(cls, data, "masses")

@@ -1,0 +1,118 @@
+"""What a study's tool travels: a pick-and-place cycle, or a path through waypoints."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+
+from kinematics import InvalidValue
+from studies.schema_base import Model, Name, Positive, gathered, table_of
+from studies.units import Dimension, Key
+from trajectory.adept import STANDARD_SIZES, AdeptCycle
+
+LENGTH, ANGLE = Dimension.LENGTH, Dimension.ANGLE
+
+
+class Cycle(Model):
+    """The pick-and-place cycle: up by `lift`, across by `span`, down by `place_lift`, and back [m, rad, kg].
+
+    A `size` stands for the three, a `place` for `span`, `heading` and `rise`.
+    """
+
+    pick: Annotated[tuple[float, float, float], Key("three lengths x, y, z", LENGTH)]
+    """Where the cycle starts."""
+    size: Annotated[str | None, Key("one of", choices=tuple(STANDARD_SIZES))] = None
+    place: Annotated[
+        tuple[float, float, float] | None, Key("three lengths x, y, z, not above the pick; no size beside it", LENGTH)
+    ] = None
+    """Where the half cycle ends."""
+    lift: Annotated[
+        Positive | None, Field(validate_default=True), Key("a length > 0, or a size instead of it", LENGTH)
+    ] = None
+    span: Annotated[
+        Positive | None, Field(validate_default=True), Key("a length > 0, or a size or a place instead of it", LENGTH)
+    ] = None
+    place_lift: Annotated[Positive | None, Key("a length > 0; no size beside it", LENGTH)] = None
+    """None for the lift."""
+    rise: Annotated[float, Key("a length, how much higher the place is; no place beside it", LENGTH)] = 0.0
+    heading: Annotated[float, Key("an angle; no place beside it", ANGLE)] = 0.0
+    """Direction of the span about z, from x."""
+    blend: Annotated[Positive, Key("a length > 0, at most the lift and at most half the span", LENGTH)]
+    turn: Annotated[float, Key("an angle", ANGLE)] = 0.0
+    start_angle: Annotated[float, Key("an angle", ANGLE)] = 0.0
+    tilt: Annotated[tuple[float, float], Key("two angles, roll and pitch at the place", ANGLE)] = (0.0, 0.0)
+    payload: Annotated[float, Field(ge=0), Key("a mass >= 0 (kg)")]
+    payload_back: Annotated[float | None, Field(ge=0), Key("a mass >= 0 (kg)")] = None
+    """On the way back; None for the same."""
+
+    @field_validator("size")
+    @classmethod
+    def _size_known(cls, size: str | None) -> str | None:
+        if size is not None and size not in STANDARD_SIZES:
+            raise ValueError("no standard size")
+        return size
+
+    @field_validator("lift", "span", "place", "place_lift")
+    @classmethod
+    def _once(cls, value: Any, info: ValidationInfo) -> Any:
+        given = [info.data.get("size")] + ([info.data.get("place")] if info.field_name == "span" else [])
+        stated = [v for v in (value, *given) if v is not None]
+        if len(stated) > 1 or (not stated and info.field_name in ("lift", "span")):
+            raise ValueError("given twice, or not at all")
+        if info.field_name == "place" and value is not None and value[:2] == info.data.get("pick", ())[:2]:
+            raise ValueError("above the pick")
+        return value
+
+    @field_validator("rise", "heading")
+    @classmethod
+    def _not_with_place(cls, value: float, info: ValidationInfo) -> float:
+        if value != 0.0 and info.data.get("place") is not None:
+            raise ValueError("the place says it")
+        return value
+
+    @field_validator("blend")
+    @classmethod
+    def _blend_fits(cls, blend: float, info: ValidationInfo) -> float:
+        if not {"size", "place", "lift", "span", "place_lift", "rise", "heading", "pick"} <= info.data.keys():
+            return blend  # what is wrong with those is told already
+        try:
+            adept_cycle({**info.data, "blend": blend})
+        except InvalidValue as error:
+            raise ValueError(str(error)) from error
+        return blend
+
+
+def adept_cycle(cycle: Mapping[str, Any], **others: Any) -> AdeptCycle:
+    """The path there, from the fields of a `Cycle`.
+
+    Raises:
+        InvalidValue: the corners do not fit, or the pose has no such angles.
+    """
+    given = {k: v for k, v in cycle.items() if v is not None and k not in ("size", "place", "payload")} | others
+    if cycle["place"] is not None:
+        return AdeptCycle.between(
+            **{k: v for k, v in given.items() if k not in ("heading", "rise")}, place=cycle["place"]
+        )
+    return AdeptCycle(**given) if cycle["size"] is None else AdeptCycle.of_size(cycle["size"], **given)
+
+
+class Waypoint(Model):
+    """A pose, and the blend of the corner there; an angle that is left out is left to its neighbours."""
+
+    coordinates: dict[str, float]
+    """By the pose's names [m or rad]."""
+    blend: Annotated[float, Field(ge=0), Key("a length >= 0", LENGTH)] = 0.0
+
+    @model_validator(mode="before")
+    @classmethod
+    def _gather_coordinates(cls, data: Any) -> Any:
+        return gathered(cls, data)
+
+
+class WaypointPath(Model):
+    """A path through waypoints, from a CSV file beside the study or from the study itself."""
+
+    file: Annotated[Name | None, Key("the name of a CSV file, or waypoints instead of it")] = None
+    waypoint: Annotated[tuple[Waypoint, ...], table_of(Waypoint, rows=True)] = ()
+    """In order; those of the file where one is given."""
+    payload: Annotated[float, Field(ge=0), Key("a mass >= 0 (kg)")]

@@ -1,0 +1,107 @@
+"""How a study's cycle is timed: limits, law, approach, and the files for the drives."""
+
+from typing import Annotated, Literal, get_args
+
+from pydantic import Field, ValidationInfo, field_validator
+
+from studies.schema_base import Interval, Model, Name, PerJoint, Positive, table_of
+from studies.schema_path import Cycle, WaypointPath
+from studies.units import Dimension, Key
+
+
+class Limits(Model):
+    """What each joint can do: a number for all joints, or one a joint; None is no limit."""
+
+    speed: Annotated[PerJoint, Key("a speed > 0, or one a joint", Dimension.JOINT_SPEED)]
+    acceleration: Annotated[PerJoint | None, Key("a number > 0, or one a joint (rad/s^2, or m/s^2)")] = None
+    torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
+    jerk: Annotated[PerJoint | None, Key("a number > 0, or one a joint (rad/s^3, or m/s^3)")] = None
+    tool_speed: Annotated[Positive | None, Key("a speed > 0 (m/s)")] = None
+    tool_acceleration: Annotated[Positive | None, Key("an acceleration > 0 (m/s^2)")] = None
+    position: Annotated[
+        Interval | Annotated[tuple[Interval, ...], Field(min_length=1)] | None,
+        Key("low < high, or one such pair a joint (rad, or m)"),
+    ] = None
+    stall_torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
+    no_load_speed: Annotated[
+        PerJoint | None,
+        Field(validate_default=True),
+        Key("a speed > 0, or one a joint, if and only if there is a stall_torque", Dimension.JOINT_SPEED),
+    ] = None
+    """Both or neither: the ends of the speed-torque line."""
+    rms_torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
+    """Of each way by itself, and so of the cycle."""
+
+    @field_validator("no_load_speed")
+    @classmethod
+    def _whole_line(cls, speed: PerJoint | None, info: ValidationInfo) -> PerJoint | None:
+        if "stall_torque" in info.data and (info.data["stall_torque"] is None) != (speed is None):
+            raise ValueError("half of a line")
+        return speed
+
+
+File = Literal["csv", "ros2", "cia402", "zaber", "xps", "pmac"]
+FILES = get_args(File)
+Increments = Annotated[int, Field(gt=0)]
+LAWS = ("jerk", "toppra", "free")
+
+
+class Approach(Model):
+    """What the joints may do on the jerk-limited move from home to the cycle's start."""
+
+    speed: Annotated[PerJoint, Key("a speed > 0, or one a joint", Dimension.JOINT_SPEED)]
+    acceleration: Annotated[PerJoint, Key("a number > 0, or one a joint (rad/s^2, or m/s^2)")]
+    jerk: Annotated[PerJoint, Key("a number > 0, or one a joint (rad/s^3, or m/s^3)")]
+
+
+class Drive(Model):
+    """What the drive files need of the machine; a value for all axes, or one an axis."""
+
+    axes: Annotated[Annotated[tuple[Name, ...], Field(min_length=1)] | None, Key("a list of names, one a joint")] = None
+    increments: Annotated[
+        Increments | Annotated[tuple[Increments, ...], Field(min_length=1)] | None,
+        Key("a whole number > 0, or one a joint (encoder increments in a turn of the motor, or in a metre on a rail)"),
+    ] = None
+    gear: Annotated[
+        float | Annotated[tuple[float, ...], Field(min_length=1)],
+        Key("a number other than 0, or one a joint (turns of the motor for one of the joint)"),
+    ] = 1.0
+
+
+class Trajectory(Model):
+    """How the cycle is timed, and how its set-points are sampled."""
+
+    law: Annotated[Literal["jerk", "toppra", "free"], Key("one of", choices=LAWS)] = "jerk"
+    """toppra keeps no jerk limit."""
+    grid: Annotated[int, Field(ge=1000, le=1_000_000), Key("a whole number from 1000 to 1000000")] = 2000
+    """Points along the path."""
+    period: Annotated[Positive, Key("a time > 0 (s)")] = 0.001
+    """Of the set-points [s]."""
+    cycle: Annotated[Cycle | None, table_of(Cycle)] = None
+    path: Annotated[WaypointPath | None, Field(validate_default=True), table_of(WaypointPath)] = None
+    """One of the two: what is travelled."""
+    limits: Annotated[Limits, table_of(Limits)]
+    approach: Annotated[Approach | None, table_of(Approach)] = None
+    """None leaves the approach out."""
+    files: Annotated[Annotated[tuple[File, ...], Field(min_length=1)], Key("a list out of", choices=FILES)] = ("csv",)
+    """Formats of the set-points' files."""
+    drive: Annotated[Drive, table_of(Drive)] = Drive()
+
+    @field_validator("path")
+    @classmethod
+    def _one_of_two(cls, path: WaypointPath | None, info: ValidationInfo) -> WaypointPath | None:
+        if "cycle" in info.data and (path is None) == (info.data["cycle"] is None):
+            raise ValueError("either a cycle or a path")
+        return path
+
+    @property
+    def payload(self) -> float:
+        """Mass at the tool [kg]."""
+        asked = self.cycle or self.path
+        assert asked is not None
+        return asked.payload
+
+    @property
+    def payload_back(self) -> float | None:
+        """Mass on the way back [kg]; None for the same."""
+        return self.cycle.payload_back if self.cycle else None
