@@ -28,7 +28,7 @@ PEERS = (  # name, module, function, options, keeps the jerk limit
     ("toppra, its defaults", "toppra_peer", "defaults", {}, False),
     ("toppra, ParametrizeConstAccel", "toppra_peer", "constant_acceleration", {}, False),
     ("toppra, ParametrizeConstAccel, N = 2000", "toppra_peer", "constant_acceleration", {"intervals": 2000}, False),
-    ("Drake Toppra (no torque limit: see below)", "drake_peer", "toppra", {}, False),
+    ("Drake Toppra, a stand-in for the torque", "drake_peer", "toppra", {}, False),
     ("copp-py TOPP2, 1001 stations", "copp_peer", "topp2", {"stations": 1001}, False),
     ("copp-py TOPP3, 501 stations", "copp_peer", "topp3", {"stations": 501}, True),
     ("copp-py TOPP3, 1001 stations", "copp_peer", "topp3", {"stations": 1001}, True),
