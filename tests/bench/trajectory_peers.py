@@ -28,7 +28,7 @@ PEERS = (  # name, module, function, options, keeps the jerk limit
     ("toppra, its defaults", "toppra_peer", "defaults", {}, False),
     ("toppra, ParametrizeConstAccel", "toppra_peer", "constant_acceleration", {}, False),
     ("toppra, ParametrizeConstAccel, N = 2000", "toppra_peer", "constant_acceleration", {"intervals": 2000}, False),
-    ("Drake Toppra (no torque limit: see below)", "drake_peer", "toppra", {}, False),
+    ("Drake Toppra, a stand-in for the torque", "drake_peer", "toppra", {}, False),
     ("copp-py TOPP2, 1001 stations", "copp_peer", "topp2", {"stations": 1001}, False),
     ("copp-py TOPP3, 501 stations", "copp_peer", "topp3", {"stations": 501}, True),
     ("copp-py TOPP3, 1001 stations", "copp_peer", "topp3", {"stations": 1001}, True),
@@ -41,13 +41,12 @@ _MODULES = {"toppra", "pydrake", "copp_py", "ruckig"}
 
 def main() -> None:
     """Compute, print and write."""
-    load = os.getloadavg()[0]
     cases = [reference(), *others()]
     rows = {case.name: rows_of(case) for case in cases}
     bounds = {case.name: _bound(case) for case in cases}
     first = cases[0].name
     goals = _goals(rows[first], bounds[first])
-    parts = [_header(load)]
+    parts = [_header()]
     for case in cases:
         parts += [f"## {case.name[0].upper()}{case.name[1:]}", _what(case), *_table(rows[case.name], bounds[case.name])]
         parts += ["", *_losses(rows[case.name]), ""]
@@ -170,7 +169,7 @@ def _spelled(value: object) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def _header(load: float) -> str:
+def _header() -> str:
     modules = {module for _, module, *_ in PEERS}
     found = []
     for module in sorted(modules):
@@ -178,7 +177,8 @@ def _header(load: float) -> str:
             found.append(f"{LIBRARIES[module]} {version(LIBRARIES[module])}")
         except ModuleNotFoundError:
             found.append(f"{LIBRARIES[module]} not installed")
-    machine = f"{platform.machine()} with {os.cpu_count()} cores, a load average of {load:.1f} before the run"
+    load = f"a load average of {os.getloadavg()[0]:.1f} at the end of the run"
+    machine = f"{platform.machine()} with {os.cpu_count()} cores, {load}"
     return HEADER.format(found=", ".join(found), machine=machine, repeats=REPEATS, long=LONG)
 
 
