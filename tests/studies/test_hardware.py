@@ -111,7 +111,7 @@ def test_set_points_say_which_machine_they_are_for(tmp_path: Path) -> None:
 
 def test_a_machine_twice_as_heavy_and_as_strong_is_as_fast(tmp_path: Path) -> None:
     """Every mass and inertia, the payload and the torques doubled: the same motion; without the torques, a slower."""
-    masses = "drive = 0.09\narm_mass = 1.8\nrod_pair_mass = 0.52\nplate_masses = [1.1, 1.1]\ntool = 1.2e-3\n"
+    masses = "drive = 0.09\narm_mass = 1.8\nrod_mass = 0.52\nplate_masses = [1.1, 1.1]\ntool = 1.2e-3\n"
     heavy = GIVEN.replace("payload = 0.5", "payload = 1.0") + "[inertia]\n" + masses
     times = []
     for text in (GIVEN, heavy.replace("torque = 127", "torque = 254"), heavy):
@@ -123,7 +123,7 @@ def test_a_machine_twice_as_heavy_and_as_strong_is_as_fast(tmp_path: Path) -> No
 
 
 def test_a_machine_without_masses_is_as_fast_as_its_speed_limit_lets_it_and_bears_no_torque(tmp_path: Path) -> None:
-    masses = "drive = 0\narm_mass = 0\nrod_pair_mass = 0\nplate_masses = [0, 0]\ntool = 0\n"
+    masses = "drive = 0\narm_mass = 0\nrod_mass = 0\nplate_masses = [0, 0]\ntool = 0\n"
     study = study_of(tmp_path, GIVEN.replace("payload = 0.5", "payload = 0") + "[inertia]\n" + masses)
     assert study.trajectory is not None
     figures = time_cycle(study.trajectory, robot_of(study)).figures()
