@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
 
 import casadi as ca
@@ -55,7 +56,7 @@ class Mechanism(Definition):
         if not isinstance(self.ranges, self.Ranges):
             raise InvalidValue(f"{type(self).__name__} ranges", ranges, f"a {self.Ranges.__name__}")
         self.ranges.check(len(self.joint_names))
-        self._programs: dict[object, BlockProgram] = {}
+        self._programs = _programs_of(type(self), self.geometry, self.inertia, self.ranges)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.geometry})"
@@ -283,6 +284,12 @@ class Mechanism(Definition):
             np.broadcast_to(first, (*lead, first.shape[-1])),
             np.broadcast_to(second, (*lead, second.shape[-1])),
         )
+
+
+@lru_cache(maxsize=32)
+def _programs_of(*_: object) -> dict[object, BlockProgram]:
+    """The programs of all robots of one class with the same numbers, built once among them."""
+    return {}
 
 
 def checked(values: Array, what: str, names: tuple[str, ...]) -> Array:
