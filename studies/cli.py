@@ -233,7 +233,7 @@ def trajectory(
     from kinematics.errors import InvalidValue
     from studies import console
     from studies.outputs import write_setpoints
-    from studies.pipeline import time_cycle
+    from studies.pipeline import require_on_path, time_cycle
     from studies.schema_trajectory import LAWS
 
     if law is not None and law not in LAWS:
@@ -247,8 +247,9 @@ def trajectory(
     asked = _load(study, formats)
     if asked.trajectory is None:
         raise InvalidValue(f"study {asked.name}", "no [trajectory] table", "one with the cycle to time")
-    robot = _robot(study, asked, prototype)
+    robot = _robot(study, _load(study), prototype)
     _require_writable(out)
+    require_on_path(asked, robot)
     with console.progress() as tell:
         tell("cycle")
         timing = time_cycle(asked.trajectory.model_copy(update={"law": law or asked.trajectory.law}), robot)

@@ -103,6 +103,7 @@ def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Ti
             {
                 **made_for,
                 **figures,
+                "lower_bound_of": "any motion on the cycle's own path, without a limit of jerk",
                 "proved_on_the_path": timing.cycle.certificate.margins,
                 "proved_over_limit": timing.cycle.proved,
                 "between_setpoints": between,

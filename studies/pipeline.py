@@ -156,6 +156,24 @@ def margins_on_path(problem: Problem, robot: Mechanism, asked: Trajectory) -> di
     return found
 
 
+def require_on_path(study: Study, robot: Mechanism) -> None:
+    """Check the study's requirements on its cycle's path.
+
+    Raises:
+        RequirementFailed: with each one that fails there.
+    """
+    assert study.trajectory is not None
+    problem = setup.problem_of(study)
+    found = margins_on_path(problem, robot, study.trajectory)
+    failed = [
+        Failed(f"{r.margin} on the cycle", r.at_least, found[r.margin], ())
+        for r in problem.requirements
+        if not found[r.margin] >= r.at_least
+    ]
+    if failed:
+        raise RequirementFailed(failed)
+
+
 def time_cycle(asked: Trajectory, robot: Mechanism) -> Timing:
     """Time, verify and sample the study's cycle on a robot."""
     from trajectory.moves import plan_move

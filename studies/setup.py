@@ -163,7 +163,8 @@ def timing_of(asked: schema_trajectory.Trajectory) -> tuple[Timing, tuple[str, .
 def approach_limits(asked: schema_trajectory.Approach, drives: Limits, joints: int) -> Limits:
     """The approach's own limits, nowhere above the drives', and the drives' torque."""
     own = Limits(asked.speed, asked.acceleration, jerk=asked.jerk)
-    merged: dict[str, Any] = {"torque": drives.torque}
+    kept = ("torque", "position", "stall_torque", "no_load_speed")  # the RMS is a cycle's
+    merged: dict[str, Any] = {name: getattr(drives, name) for name in kept}
     for name in ("speed", "acceleration", "jerk"):
         given = [limit for limits in (own, drives) if (limit := limits.of_joints(name, joints)) is not None]
         merged[name] = tuple(np.min(given, axis=0).tolist())

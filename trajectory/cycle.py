@@ -16,7 +16,8 @@ from kinematics import InvalidValue, Mechanism
 from trajectory.errors import LimitsExceeded
 from trajectory.limits import Limits
 from trajectory.path import Path, Reversed
-from trajectory.path_certificate import PathCertificate, certify_path
+from trajectory.path_certificate import PathCertificate, certify_path, worst_of
+from trajectory.pose_spline import InTime, PoseSpline
 from trajectory.repair import Repaired, repair
 from trajectory.timed import TimedMotion
 from trajectory.verification import Verification, verify
@@ -55,7 +56,7 @@ class Cycle:
     """A path that was proved, and its pieces in order, with the limits and the robot for which they are timed.
 
     Attributes:
-        certificate: that every pose of the path is within reach and away from the singularities.
+        certificate: that every pose of the path, or of the motions that left it, is within reach and not singular.
         limits: that are kept.
         not_kept: fields of the limits that were asked for too, but that the timing law cannot keep.
         there, back: the pieces of each way; none back where the path ends in the pose where it starts.
@@ -150,6 +151,9 @@ def there_and_back(
 
     there = timed(path, payload)
     back = () if is_closed(path) else timed(Reversed(path), payload if payload_back is None else payload_back)
+    own = [InTime(p.motion, path.pose_names) for p in (*there, *back) if isinstance(p.motion, PoseSpline)]
+    if own:  # not the path was travelled
+        certificate = worst_of([certify_path(robot, way) for way in own])
     return Cycle(robot, limits, path, certificate, there, back, left_out)
 
 

@@ -29,6 +29,7 @@ from trajectory.errors import LimitsExceeded
 from trajectory.limits import Limits
 from trajectory.paced import PacedMotion, one_sided
 from trajectory.path import Array
+from trajectory.proof import proved_use
 from trajectory.timed import TimedMotion
 from trajectory.timing import TimeLaw
 from trajectory.torque_terms import torque_by_rate
@@ -90,9 +91,11 @@ def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: L
     motion = PacedMotion(timed, TimeLaw.constant_acceleration("emergency stop", tau, pace))
     found = verify(robot, motion, replace(limits, jerk=None), payload)
     failures = {name: value for name, value in found.failures.items() if name != "start speed"}  # it starts in motion
+    proved = proved_use(robot, motion, replace(limits, jerk=None), payload)
+    failures |= {f"{name}, proved": bound for name, bound in proved.items() if not bound <= 1.0}
     if failures:
         raise LimitsExceeded(failures, 1.0)
-    return EmergencyStop(motion, start, found)
+    return EmergencyStop(motion, start, replace(found, proved=proved))
 
 
 def _steps(timed: TimedMotion, start: float, rest: float) -> Array:

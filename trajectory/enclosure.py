@@ -24,6 +24,8 @@ from trajectory.motion import Motion, PoseMotion, motion_of
 from trajectory.timed import TimedMotion
 
 _ALL = (-np.inf, np.inf)
+_REST = 1e-9  # m/s or rad/s
+_ROUNDED = 1e-6  # of a speed's slack: far more than what rounding the times of short parts is worth
 _SLACK = 1e-12  # relative and absolute: far more than what evaluation in double arithmetic is off by
 
 
@@ -62,7 +64,8 @@ def slack(robot: Mechanism, timed: TimedMotion, payload: float, low: Array, high
     found = half * np.maximum(np.abs(least), np.abs(most))
     count = len(robot.joint_names)
     *joints, torque = (found[:, k * count : (k + 1) * count] for k in range(5))
-    at_rest = (low <= 0.0) | (high >= timed.duration)
+    (starts, ends) = np.abs(timed.at(np.array([0.0, timed.duration])).velocity).max(axis=-1) <= _REST
+    at_rest = (starts & (low <= 0.0)) | (ends & (high >= timed.duration))
     friction, unknown = _friction_slack(robot, tool, payload, joints, at_rest)
     # Up to the middle the torque is at most the line of least slope through it, beyond it that of the largest.
     uneven = half * (most - least)[:, -count:] / 4.0 + np.where(unknown, torque + friction, friction)
@@ -81,7 +84,7 @@ def _friction_slack(
     speed, acceleration = motion.joints.first, motion.joints.second
     own = drives.friction(speed)[0]
     without, size = motion.torque - own, np.abs(motion.torque)
-    unknown = np.abs(speed) <= joints[1]
+    unknown = np.abs(speed) <= joints[1] * (1.0 + _ROUNDED) + _REST  # where it is at rest it bears none
     # From rest and to rest the speed keeps its sign where the acceleration does.
     starting = at_rest[:, None] & (np.abs(acceleration) > joints[2])
     most = np.where(starting, np.maximum(np.abs(without), size), np.abs(without) + coulomb)

@@ -168,6 +168,9 @@ def _require_usable(robot: Mechanism, limits: Limits, period: float) -> None:
             raise InvalidValue(
                 f"Limits {name} for a move of the joints", getattr(limits, name), "None: it moves the joints"
             )
+    if limits.rms_torque is not None:
+        what = "None: it is a mean over a cycle, which a single move is none of"
+        raise InvalidValue("Limits rms_torque for a move of the joints", limits.rms_torque, what)
     if not (math.isfinite(period) and period > 0.0):
         raise InvalidValue("period", period, "a finite time > 0 s")
 
@@ -226,4 +229,11 @@ def _peaks(dense: tuple[Array, Array, Array], torque: Array, limits: Limits, ste
     if limits.torque is not None:
         quantities["torque"] = torque
     count = joints.shape[1]
-    return {name: float((np.abs(v) / limits.of_joints(name, count)).max()) for name, v in quantities.items()}
+    found = {name: float((np.abs(v) / limits.of_joints(name, count)).max()) for name, v in quantities.items()}
+    if (ranges := limits.ranges(count)) is not None:
+        middle, half = (ranges[1] + ranges[0]) / 2, (ranges[1] - ranges[0]) / 2
+        found["position"] = float((np.abs(joints - middle) / half).max())
+    stall, fastest = limits.of_joints("stall_torque", count), limits.of_joints("no_load_speed", count)
+    if stall is not None and fastest is not None:
+        found["torque at speed"] = float((np.abs(torque) / stall + np.abs(speed) / fastest).max())
+    return found

@@ -67,6 +67,11 @@ class PacedMotion:
         """As `TimedMotion.stretched`."""
         return replace(self, pace=self.pace.stretched(factor))
 
+    @property
+    def kink(self) -> float:
+        """That of the motion."""
+        return self.motion.kink
+
     def steepest_jerk(self, low: Array, high: Array) -> Array:
         """As `TimedMotion.steepest_jerk`."""
         along, half = self.pace.at(0.5 * low + 0.5 * high), (high - low) * (0.5 + _INSIDE)

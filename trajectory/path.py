@@ -29,6 +29,14 @@ class PathBox(NamedTuple):
     first_high: Array
 
 
+class HasPoseNames(Protocol):
+    """A way of poses."""
+
+    @property
+    def pose_names(self) -> tuple[str, ...]:
+        """(n,) of the pose's coordinates."""
+
+
 class Path(Protocol):
     """A path of poses by the arc length s of the tool point, twice smooth in its tangent.
 
@@ -192,7 +200,7 @@ def places(pose_names: Sequence[str]) -> int:
     return sum(name in ("x", "y", "z") for name in pose_names)
 
 
-def require_poses_of(robot: Mechanism, path: Path) -> None:
+def require_poses_of(robot: Mechanism, path: HasPoseNames) -> None:
     """Check that a path's poses are of the robot's kind.
 
     Raises:

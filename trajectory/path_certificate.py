@@ -11,6 +11,7 @@ right to 1e-12, by which its bounds are widened.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -25,7 +26,9 @@ from kinematics.program import Program
 from kinematics.rods import RodLevel
 from trajectory.errors import PathRefused
 from trajectory.path import Array, Path, PathBox, require_poses_of
+from trajectory.pose_spline import InTime
 
+Way = Path | InTime
 _START = 64  # intervals, at least, that the path is cut into first
 _SHARE = 0.9  # of the lowest value seen, that a bound must reach
 _SMALLEST = 1e-9  # of the length: narrower intervals are not halved
@@ -53,7 +56,7 @@ class PathCertificate:
         return [(name, f"{(1.0 - 5e-4) * bound:.4g}") for name, bound in self.margins.items()]
 
 
-def certify_path(robot: Mechanism, path: Path) -> PathCertificate:
+def certify_path(robot: Mechanism, path: Way) -> PathCertificate:
     """Prove that every pose of a path is within reach and away from the singularities.
 
     Args:
@@ -89,13 +92,19 @@ def certify_path(robot: Mechanism, path: Path) -> PathCertificate:
     return PathCertificate(margins, count)
 
 
+def worst_of(certificates: Sequence[PathCertificate]) -> PathCertificate:
+    """What holds on all of several ways."""
+    margins = {name: min(c.margins[name] for c in certificates) for name in certificates[0].margins}
+    return PathCertificate(margins, sum(c.intervals for c in certificates))
+
+
 class _Claims:
     """Margins that must be above 0 all along the path.
 
     Moduli are left out: a continuous function that is never 0 keeps the sign that it has at the start.
     """
 
-    def __init__(self, robot: Mechanism, path: Path) -> None:
+    def __init__(self, robot: Mechanism, path: Way) -> None:
         self.path = path
         model, fixed = robot.model(), robot.geometry.vector().tolist()
         (start,) = path.evaluate(np.array(0.0), 0)

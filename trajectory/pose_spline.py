@@ -8,9 +8,10 @@ import numpy as np
 
 from kinematics import InvalidShape, InvalidValue
 from trajectory.motion import PoseMotion
-from trajectory.path import Array
+from trajectory.path import Array, PathBox
 
 _ROUNDING = 1e-9  # of the duration, or of the largest value
+_SLACK = 1e-12  # relative and absolute: far more than what evaluation in double arithmetic is off by
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +97,42 @@ class PoseSpline:
         """As `TimedMotion.steepest_jerk`: the jerk is constant in each interval."""
         return np.zeros((low.size, self.ends.shape[-1]))
 
+    @property
+    def kink(self) -> float:
+        """None: the intervals join to the second derivative."""
+        return 0.0
+
     def _in_interval(self, interval: Array, since: Array) -> PoseMotion:
         p, v, a, j = (x[interval] for x in (self.pose, self.velocity, self.acceleration, self.jerk))
         t = since[..., None]
         return PoseMotion(p + t * (v + t * (a / 2 + t * j / 6)), v + t * (a + t * j / 2), a + t * j, j)
+
+
+@dataclass(frozen=True)
+class InTime:
+    """A spline as a path by the time in place of the arc length, to be proved as one (`certify_path`)."""
+
+    spline: PoseSpline
+    pose_names: tuple[str, ...]
+
+    @property
+    def length(self) -> float:
+        """T [s]."""
+        return self.spline.duration
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """(k + 1,) of the spline [s]."""
+        return tuple(self.spline.times.tolist())
+
+    def evaluate(self, s: Array, order: int = 3) -> tuple[Array, ...]:
+        """The pose and its derivatives by time."""
+        return tuple(self.spline.at(s)[: order + 1])
+
+    def enclose(self, low: Array, high: Array) -> PathBox:
+        """As `Path.enclose`: from the middle, where the jerk is known, one order after the other."""
+        pose, velocity, acceleration, jerk = self.spline.at(0.5 * low + 0.5 * high)
+        half = ((high - low) * (0.5 + _ROUNDING))[:, None]
+        rate = half * (np.abs(acceleration) + half * np.abs(jerk)) + _SLACK * (1.0 + np.abs(velocity))
+        away = half * (np.abs(velocity) + rate) + _SLACK * (1.0 + np.abs(pose))
+        return PathBox(pose - away, pose + away, velocity - rate, velocity + rate)

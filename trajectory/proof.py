@@ -20,6 +20,7 @@ _PARTS = 4000  # of the whole motion at first, about
 _CLOSE = 2e-5  # relative: by how much a bound may exceed the highest use seen
 _CUTS = 4  # of a part that is cut
 _ROUNDS = 6  # of cutting; what is still open then keeps its bound
+_SLACK = 1e-11  # relative: more than what evaluation in double arithmetic is off by
 _RMS = "rms torque"
 
 
@@ -49,7 +50,7 @@ def proved_use(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: fl
                 open_ |= ~(most[name] <= seen[name] * (1.0 + _CLOSE)).all(axis=-1)
         closed = ~open_
         for name, ratio in most.items():
-            highest = float(np.nan_to_num(ratio[closed], nan=np.inf).max(initial=0.0))
+            highest = float(np.nan_to_num(ratio[closed], nan=np.inf).max(initial=0.0)) * (1.0 + _SLACK)
             bounds[name] = max(bounds.get(name, 0.0), highest)
         parts = (high - low, np.abs(motion.torque), away.motion.torque, away.mean_torque)
         squares += _squares(*(part[closed] for part in parts))

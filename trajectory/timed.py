@@ -62,6 +62,10 @@ class TimedMotion(Protocol):
     def steepest_jerk(self, low: Array, high: Array) -> Array:
         """(k, n) bounds of the modulus of the pose's fourth derivative between two times (k,), each of one interval."""
 
+    @property
+    def kink(self) -> float:
+        """How far the way itself is from having a continuous second derivative; 0 is smooth."""
+
 
 @dataclass(frozen=True, eq=False)
 class TimedPath:
@@ -129,6 +133,17 @@ class TimedPath:
         away = half * speed
         first_s, last_s = (np.clip(along.position + d, 0.0, self.path.length) for d in (-away, away))
         return steepest_travelled(second, third, self._steepest_third(first_s, last_s), away, rates)
+
+    @property
+    def kink(self) -> float:
+        """The largest jump, at a knot inside, of the tangent, or of its derivative times the length."""
+        knots = np.array(self.path.knots)[1:-1]
+        if not knots.size:
+            return 0.0
+        _, *before = self.path.evaluate(np.nextafter(knots, 0.0), 2)
+        _, *after = self.path.evaluate(knots, 2)
+        jumps = [np.abs(b - a).max() for b, a in zip(before, after, strict=True)]
+        return float(max(jumps[0], jumps[1] * self.path.length))
 
     def _steepest_third(self, low: Array, high: Array) -> Array:
         """Of all pieces of the path between two arc lengths (k,)."""

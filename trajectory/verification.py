@@ -35,6 +35,7 @@ _TOLERANCES = {  # SI, the closure in m^2; the two integrals are relative
     "end speed": 1e-9,
     "closure": 1e-9,
     "forward": 1e-6,
+    "kink of the path": 1e-7,
     "integral of acceleration": 1e-4,
     "integral of speed": 1e-6,
 }
@@ -212,6 +213,7 @@ def _residuals(robot: Mechanism, timed: TimedMotion, motion: Motion) -> dict[str
         "end pose": _largest(pose[-1, -1] - end),
         "start speed": _largest(motion.tool.velocity[0, 0]),
         "end speed": _largest(motion.tool.velocity[-1, -1]),
+        "kink of the path": timed.kink,
         "closure": _largest(robot.closure_residual(pose, joints)),
         "forward": _largest(by_forward),
     }

@@ -9,10 +9,21 @@ import numpy as np
 import pytest
 
 from kinematics import Heli4, InvalidShape, InvalidValue
-from trajectory import AdeptCycle, Limits, PoseSpline, Reversed, TimingFailed, free_motion, lower_bound, verify
+from trajectory import (
+    AdeptCycle,
+    Limits,
+    PoseSpline,
+    Reversed,
+    TimingFailed,
+    certify_path,
+    free_motion,
+    lower_bound,
+    verify,
+)
 from trajectory.arch import TOLERANCE, Arch
 from trajectory.free_law import _require_clear
 from trajectory.interval_nlp import Answer, IntervalProgram
+from trajectory.pose_spline import InTime
 
 JERK = Limits(speed=20.0, torque=127.0, jerk=1e5)
 
@@ -121,3 +132,13 @@ def test_a_spline_that_does_not_join_is_refused(motion: PoseSpline) -> None:
         replace(motion, velocity=velocity)
     with pytest.raises(InvalidShape):
         replace(motion, jerk=motion.jerk[:-1])
+
+
+def test_what_is_proved_is_proved_of_the_motion_and_not_of_the_path_that_it_left(
+    robot: Heli4, path: AdeptCycle, motion: PoseSpline
+) -> None:
+    own = certify_path(robot, InTime(motion, path.pose_names)).margins
+    poses = motion.at(np.linspace(0.0, motion.duration, 20_001)).pose
+    for name in ("reach", "J_q", "det_J_x", "internal_determinant", "joint_travel"):
+        assert 0.85 * robot.margin(name, poses).min() <= own[name] <= robot.margin(name, poses).min()
+    assert own["reach"] != certify_path(robot, path).margins["reach"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -216,3 +217,19 @@ def test_a_stop_whose_rest_is_out_of_reach_is_refused(robot: Heli4) -> None:
     state = (robot.inverse(np.array([0.0, 0.0, -1.09, 0.0])), np.full(4, 15.0), np.zeros(4))
     with pytest.raises(TimingFailed, match=r"no pose|another working mode"):
         plan_stop(robot, state, replace(LIMITS, torque=None), 1.0, 1e-3, UNITS)
+
+
+@pytest.mark.parametrize(
+    ("more", "error", "says"),
+    [
+        ({"position": (-0.01, 0.01)}, LimitsExceeded, "position"),
+        ({"stall_torque": 5.0, "no_load_speed": 1.0}, LimitsExceeded, "torque at speed"),
+        ({"rms_torque": 0.01}, InvalidValue, "rms_torque"),
+    ],
+)
+def test_no_limit_is_dropped_in_silence(more: dict[str, Any], error: type[Exception], says: str) -> None:
+    limits = Limits(speed=5.0, acceleration=100.0, jerk=5000.0, **more)
+    with pytest.raises(error, match=says):
+        plan_move(
+            Heli4(), np.array([-0.15, 0, -0.8, 0]), np.array([0.15, 0, -0.75, 1.0]), limits, 1.0, 0.001, ("rad",) * 4
+        )

@@ -9,11 +9,14 @@ import numpy as np
 import pytest
 from toppra.algorithm import ParameterizationReturnCode
 
+from kinematics import Heli4
 from tests.bench.timing.cases import Case, reference
 from tests.bench.timing.toppra_peer import ExactPath, defaults, problem_of, solved, spline
 from trajectory import (
     AdeptCycle,
+    Limits,
     Reversed,
+    RoundedPath,
     TimedPath,
     TimeLaw,
     Verification,
@@ -155,3 +158,13 @@ def with_swing(law: TimeLaw, start: float, quarter: float, size: float) -> TimeL
     ways = steps * (speed[:-1] + steps * acceleration / 2)
     position = np.concatenate([[0.0], np.cumsum(ways)])
     return TimeLaw(law.name, times, position, np.maximum(speed, 0.0), acceleration, np.zeros_like(steps))
+
+
+@pytest.mark.parametrize("turn", [5e-5, 1.5e-4, 4e-3])
+def test_a_corner_too_small_for_the_integrals_is_found_all_the_same(robot: Heli4, limits: Limits, turn: float) -> None:
+    """A tangent that jumps by a hair: the speed steps, and no proof inside the parts can see it."""
+    corner, end = np.array([-0.08, 0.0, -0.8, 0.0]), 0.18 * np.array([math.cos(turn), 0.0, math.sin(turn), 0.0])
+    poses = ((-0.1, 0.0, -0.8, 0.0), tuple(corner.tolist()), tuple((corner + end).tolist()))
+    kinked = RoundedPath(("x", "y", "z", "theta"), poses, (0.0,))
+    found = verify(robot, time_optimal(robot, kinked, limits, 1.0, 1000).stretched(1.01), limits, 1.0)
+    assert found.failures["kink of the path"] > 100.0
