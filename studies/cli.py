@@ -249,10 +249,10 @@ def trajectory(
         raise InvalidValue(f"study {asked.name}", "no [trajectory] table", "one with the cycle to time")
     robot = _robot(study, _load(study), prototype)
     _require_writable(out)
-    require_on_path(asked, robot)
     with console.progress() as tell:
         tell("cycle")
         timing = time_cycle(asked.trajectory.model_copy(update={"law": law or asked.trajectory.law}), robot)
+    require_on_path(asked, robot)
     console.print_timing(timing, write_setpoints(timing, asked.trajectory, out) if out else [], json)
 
 

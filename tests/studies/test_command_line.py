@@ -87,6 +87,20 @@ def test_wrong_input_exits_2_with_its_place(tmp_path: Path, change: tuple[str, .
         assert word in ended.stderr
 
 
+def test_a_requirement_that_fails_on_the_path_exits_1_and_writes_nothing(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(SMALL.replace("at_least = 0.4", "at_least = 0.99"))
+    ended = linkwright("trajectory", tmp_path, "--prototype", "--out", tmp_path / "out")
+    assert ended.returncode == 1
+    assert "internal_determinant on the cycle" in ended.stderr
+    assert not list((tmp_path / "out").glob("*"))
+
+
+def test_another_format_is_written_for_a_committed_optimum(tmp_path: Path) -> None:
+    ended = linkwright("trajectory", "peppermill", "--out", tmp_path, "--format", "zaber")
+    assert ended.returncode == 0, ended.stderr
+    assert (tmp_path / "cycle.zaber.csv").exists()
+
+
 def test_without_a_committed_optimum_nothing_else_is_taken_for_it(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(SMALL)
     for command in ("trajectory", "report"):
