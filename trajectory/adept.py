@@ -181,6 +181,6 @@ class AdeptCycle:
         """As `Path.enclose`."""
         return self.rounded.enclose(low, high)
 
-    def steepest_third(self, s: Array) -> Array:
-        """As `Path.steepest_third`."""
-        return self.rounded.steepest_third(s)
+    def steepest(self, s: Array, order: int) -> Array:
+        """As `Path.steepest`."""
+        return self.rounded.steepest(s, order)

@@ -26,9 +26,9 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)  # exact to rounding: the
 _NODES, _WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2
 
 
-# The largest moduli on [0, 1] of the first three derivatives of S5, and of the fourth of S7.
-QUINTIC_MOST = (1.875, 5.7736, 60.0)
-SEPTIC_FOURTH = 840.0
+# The largest moduli on [0, 1] of the first four derivatives of S5, and of the fourth and fifth of S7.
+QUINTIC_MOST = (1.875, 5.7736, 60.0, 360.0)
+SEPTIC_MOST = {4: 840.0, 5: 10080.0}
 
 
 def quintic(u: Number) -> Number:

@@ -1,7 +1,7 @@
 """How far the joints' motion and the torque can be, between samples, from what they are at the samples.
 
 Over a short time a quantity f is within r max |f'| of its value in the middle, r half of that time: an interval kernel,
-rounded outward, bounds f' from bounds of the pose's motion, and these follow from a bound of its fourth derivative, one
+rounded outward, bounds f' from bounds of the pose's motion, and these follow from bounds of its fourth derivative, one
 order after the other. So nothing is left between the samples.
 """
 
@@ -53,13 +53,13 @@ def slack(robot: Mechanism, timed: TimedMotion, payload: float, low: Array, high
         low, high: (k,) times between which a part lies, each inside one interval of the motion [s].
     """
     half = ((high - low) * (0.5 + _SLACK))[:, None]
-    tool, snap, away = timed.at(0.5 * low + 0.5 * high), timed.steepest_jerk(low, high), list[Array]()
-    steepest = snap
+    tool, snap, away = timed.at(0.5 * low + 0.5 * high), timed.enclose_snap(low, high), list[Array]()
+    steepest = np.abs(snap).max(axis=0)
     for value in tool[::-1]:
         away.insert(0, half * steepest + _SLACK * (1.0 + np.abs(value)))
         steepest = np.abs(value) + away[0]
     bounds = [np.stack([value - d, value + d]) for value, d in zip(tool, away, strict=True)]
-    boxes = np.concatenate([*bounds, np.stack([-snap, snap])], axis=-1)
+    boxes = np.concatenate([*bounds, snap], axis=-1)
     least, most = (np.nan_to_num(v, nan=n) for v, n in zip(enclose(_slopes(robot, payload), *boxes), _ALL, strict=True))
     found = half * np.maximum(np.abs(least), np.abs(most))
     count = len(robot.joint_names)

@@ -109,7 +109,7 @@ def _path_boxes(path: Path, edges: Array) -> tuple[list[Array], Array, Array]:
     middle = 0.5 * edges[1:] + 0.5 * edges[:-1]
     half = np.maximum(edges[1:] - middle, middle - edges[:-1])[:, None]
     derivatives = path.evaluate(middle, 3)
-    steepest, bounds = path.steepest_third(middle), list[tuple[Array, Array]]()
+    steepest, bounds = path.steepest(middle, 4), list[tuple[Array, Array]]()
     for value in derivatives[::-1]:
         away = half * steepest * (1.0 + _SLACK) + _SLACK * (1.0 + np.abs(value))
         bounds.insert(0, (value - away, value + away))

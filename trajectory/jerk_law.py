@@ -1,11 +1,14 @@
-"""The fastest law on a fixed path that keeps all limits, jerk among them: s''' piecewise constant, s'' continuous.
+"""The fastest law on a fixed path that keeps all limits, jerk among them: s''' piecewise linear, s'' continuous.
 
 The problem of `jerk_problem` is solved on few knots first, then on all, which stand where the first answer needs them.
-It keeps every limit at the knots, on both sides. In between, what the last answer exceeds, sampled densely, tightens
-the limits at the knots around it, and the problem is solved again; the little that is left is for `repair`.
+It keeps every limit at the knots and midway between. What the last answer exceeds in between, sampled densely, tightens
+the limits around it, and the problem is solved again from that answer; the little that is left is for `repair`.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,7 +16,7 @@ from kinematics import InvalidValue, Mechanism
 from trajectory.errors import TimingFailed
 from trajectory.jerk_numbers import Numbers, Scale, numbers_of
 from trajectory.jerk_problem import Row, Shape, Variables, solver_of
-from trajectory.jerk_start import Start, denser_start, polynomial_start
+from trajectory.jerk_start import Start, denser_start, polynomial_start, start_of
 from trajectory.limits import Limits
 from trajectory.motion import motion_of
 from trajectory.path import Array, Path, require_poses_of, require_smooth
@@ -22,15 +25,16 @@ from trajectory.timing import TimeLaw
 from trajectory.usage import uses
 from trajectory.verification import integrals
 
-INTERVALS = 160
+INTERVALS = 200
 LEAST_INTERVALS = 20
-ROUNDS = 4  # of solving and tightening
-_CLOSE = 1.0005  # peak over limit that is left to the repair
-_SAMPLES = np.linspace(0.0, 1.0, 17)  # of each interval, where limits are looked at between the knots
+ROUNDS = 6  # of solving and tightening
+_CLOSE = 1.00005  # peak over limit that is left to the repair
+_SAMPLES = np.linspace(0.0, 1.0, 65)  # of each interval, where limits are looked at between the knots
+_SLOWEST = 0.75  # share of what is exceeded that a round leaves, to be believed
 _SHORTEST = 1e-3  # interval, of the mean one
 _RMS = "rms torque"
 _CHECKED = 2000  # intervals of arc length on which the path must be smooth and within reach
-_ONE_SIDED = ("tool acceleration", "torque at speed", _RMS)
+_ONE_SIDED = ("speed", "tool acceleration", "torque at speed", _RMS)
 
 Excess = dict[str, Array]  # by quantity: peak over limit of each interval (n,), at least 1; (m,) for the RMS torque
 
@@ -43,7 +47,7 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
         path: smooth to its third derivative, without a cusp.
         limits: of joints and tool; all are kept but the position, which the path alone decides.
         payload: mass at the tool [kg].
-        intervals: of constant s''', at least 20.
+        intervals: of linear s''', at least 20.
 
     Raises:
         InvalidValue: too few intervals, no jerk limit, an impossible payload, or another kind of pose.
@@ -58,61 +62,87 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     require_poses_of(robot, path)
     require_smooth(path, grid)
     robot.require_reachable(path.evaluate(grid, 0)[0])
-    start = polynomial_start(robot, path, limits, payload, intervals // 2)
     asked = {**limits.as_dict(), "payload": payload, "intervals": intervals, "path": path.as_dict()}
-    coarse = _Knots(robot, path, limits, payload, start, asked)
-    timed = coarse.solved({})
-    over = np.max([r - 1.0 for name, r in coarse.excess(timed).items() if name != _RMS], axis=0)
-    knots = _Knots(robot, path, limits, payload, denser_start(timed.law, over, intervals), asked)
-    tight: Excess = {}
+    problem = _Problem(robot, path, limits, payload, asked)
+    coarse = problem.solved(polynomial_start(robot, path, limits, payload, intervals // 2))
+    over = np.max([r - 1.0 for name, r in problem.excess(coarse.timed).items() if name != _RMS], axis=0)
+    return _tightened(problem, problem.solved(denser_start(coarse.timed.law, over, intervals))).timed
+
+
+def _tightened(problem: _Problem, answer: _Answer) -> _Answer:
+    """Solved again and again, on the same knots, until the limits are kept between the stations too, or nearly."""
+    found = problem.excess(answer.timed)
+    tight, last = {name: np.ones_like(ratio) for name, ratio in found.items()}, found
     for _ in range(ROUNDS):
-        timed = knots.solved(tight)
-        found = knots.excess(timed)
         if max(ratio.max() for ratio in found.values()) <= _CLOSE:
             break
-        tight = {name: ratio * tight.get(name, 1.0) for name, ratio in found.items()}
-    return timed
+        tight = {name: tight[name] * _power(ratio, last[name]) for name, ratio in found.items()}
+        answer, last = problem.solved_again(answer, tight), found
+        found = problem.excess(answer.timed)
+    return answer
 
 
-class _Knots:
-    """The problem on given knots."""
+def _power(ratio: Array, last: Array) -> Array:
+    """How much more to tighten: as if what is exceeded went on to shrink by the same share in each round."""
+    now, before = np.log(ratio), np.log(last)
+    share = np.divide(now, before, out=np.zeros_like(now), where=before > 0.0)
+    return np.exp(now / (1.0 - np.where(share < 1.0, np.minimum(share, _SLOWEST), 0.0)))
 
-    def __init__(
-        self, robot: Mechanism, path: Path, limits: Limits, payload: float, start: Start, asked: dict[str, object]
-    ) -> None:
-        self.robot, self.path, self.limits, self.payload = robot, path, limits, payload
-        self.start, self.asked = start, asked
-        self.scale = Scale.of(path.length, float(start.times[-1]))
-        self.numbers = numbers_of(robot, path, limits, payload, start.position, self.scale)
-        self.solver = solver_of(Shape(start.intervals, len(robot.actuator_names), frozenset(self.numbers.bounds)))
 
-    def solved(self, tight: Excess) -> TimedPath:
-        """The law with each limit tightened by so much.
+class _Answer(NamedTuple):
+    """A law, and the multipliers of the variables' bounds and of the rows."""
 
-        Raises:
-            TimingFailed: the solver did not converge.
-        """
-        start, scale, numbers = self.start, self.scale, self.numbers.parameters
-        if "rms" in numbers:
-            numbers = numbers | {"rms": numbers["rms"] * tight.get(_RMS, 1.0) ** 2}
-        low, high = _variable_bounds(self.numbers, tight)
-        row_low, row_high = _row_bounds(self.solver.rows, self.numbers, tight)
-        step, acceleration = np.diff(start.times) / scale.time, start.acceleration / scale.acceleration
-        first = Variables(start.speed / scale.speed, acceleration, np.diff(acceleration) / step, step)
-        found = self.solver.function(
-            x0=np.concatenate(first), p=self.solver.parameter(numbers), lbx=low, ubx=high, lbg=row_low, ubg=row_high
-        )
-        status = self.solver.function.stats()["return_status"]
+    timed: TimedPath
+    of_variables: Array
+    of_rows: Array
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """What stays while the knots and the limits' tightening change."""
+
+    robot: Mechanism
+    path: Path
+    limits: Limits
+    payload: float
+    asked: dict[str, object]
+
+    def solved(self, start: Start) -> _Answer:
+        """From a motion that is close, on its knots."""
+        return self._solve(start, {}, None)
+
+    def solved_again(self, answer: _Answer, tight: Excess) -> _Answer:
+        """On the same knots, each limit tightened by so much."""
+        law = answer.timed.law
+        start = start_of(law, law.times)
+        try:
+            return self._solve(start, tight, answer)
+        except TimingFailed:  # far from the answer: its multipliers mislead
+            return self._solve(start, tight, None)
+
+    def _solve(self, start: Start, tight: Excess, answer: _Answer | None) -> _Answer:
+        scale = Scale.of(self.path.length, float(start.times[-1]))
+        numbers = numbers_of(self.robot, self.path, self.limits, self.payload, start.position, scale)
+        solver = solver_of(Shape(start.intervals, len(self.robot.actuator_names), frozenset(numbers.bounds)))
+        given = numbers.parameters
+        if "rms" in given:
+            given = given | {"rms": given["rms"] * tight.get(_RMS, 1.0) ** 2}
+        low, high = _variable_bounds(numbers, tight)
+        row_low, row_high = _row_bounds(solver.rows, numbers, tight)
+        first = [start.speed[::2] / scale.speed, start.acceleration[::2] / scale.acceleration]
+        first += [jerk / scale.jerk for jerk in start.jerk] + [np.diff(start.times[::2]) / scale.time]
+        function = solver.from_start if answer is None else solver.from_answer
+        known = {} if answer is None else {"lam_x0": answer.of_variables, "lam_g0": answer.of_rows}
+        bounds = {"lbx": low, "ubx": high, "lbg": row_low, "ubg": row_high}
+        found = function(x0=np.concatenate(first), p=solver.parameter(given), **bounds, **known)
+        status = function.stats()["return_status"]
         if status != "Solve_Succeeded":
             raise TimingFailed("jerk", self.asked, f"no solution ({status})")
-        x = Variables.split(np.array(found["x"]).ravel())
-        times = np.concatenate([[0.0], np.cumsum(x.step)]) * scale.time
-        acceleration = x.acceleration[:-1] * scale.acceleration
-        law = TimeLaw("jerk", times, start.position, x.speed * scale.speed, acceleration, x.jerk * scale.jerk)
-        return TimedPath(self.path, law)
+        law = _law(Variables.split(np.array(found["x"]).ravel()), start.position[::2], scale)
+        return _Answer(TimedPath(self.path, law), np.array(found["lam_x"]), np.array(found["lam_g"]))
 
     def excess(self, timed: TimedPath) -> Excess:
-        """What a law uses beyond its limits, between the knots too."""
+        """What a law uses beyond its limits, between the stations too."""
         times, tool = timed.within(_SAMPLES)
         motion = motion_of(self.robot, tool, self.payload)
         found = {
@@ -127,12 +157,21 @@ class _Knots:
         return found
 
 
+def _law(x: Variables, knots: Array, scale: Scale) -> TimeLaw:
+    step = x.step * scale.time
+    acceleration, jerk = x.acceleration[:-1] * scale.acceleration, x.jerk * scale.jerk
+    snap = (x.last_jerk * scale.jerk - jerk) / step
+    times = np.concatenate([[0.0], np.cumsum(step)])
+    return TimeLaw("jerk", times, knots, x.speed * scale.speed, acceleration, jerk, snap)
+
+
 def _variable_bounds(numbers: Numbers, tight: Excess) -> tuple[Array, Array]:
     """Of all variables; at rest, with zero s'', at both ends."""
-    n = numbers.parameters["ds"].size
-    top = np.min([speed / _at_knots(tight, name, n) for name, speed in numbers.top_speeds.items()], axis=0)
-    low = Variables(np.zeros(n + 1), np.full(n + 1, -np.inf), np.full(n, -np.inf), np.full(n, _SHORTEST / n))
-    high = Variables(top, np.full(n + 1, np.inf), np.full(n, np.inf), np.full(n, np.inf))
+    n, free = numbers.parameters["ds"].size, np.inf
+    top = _top_speed(numbers, tight)[::2]
+    knots, intervals = np.full(n + 1, free), np.full(n, free)
+    low = Variables(np.zeros(n + 1), -knots, -intervals, -intervals, np.full(n, _SHORTEST / n))
+    high = Variables(top, knots, intervals, intervals, intervals)
     for bound in (low, high):
         bound.speed[[0, -1]] = bound.acceleration[[0, -1]] = 0.0
     return np.concatenate(low), np.concatenate(high)
@@ -143,21 +182,30 @@ def _row_bounds(rows: tuple[Row, ...], numbers: Numbers, tight: Excess) -> tuple
     n = numbers.parameters["ds"].size
     low, high = [np.zeros(3 * n)], [np.zeros(3 * n)]
     for row in rows:
-        bound = numbers.bounds[row.quantity][row.joint]
-        if row.place == "whole":
-            most = np.array([bound])
+        if row.place == "middles":
+            most = _top_speed(numbers, tight)[1::2]
+        elif row.place == "whole":
+            most = numbers.bounds[row.quantity][[row.joint]]
         else:
             inside = tight.get(row.quantity, np.ones(n))
-            there = _at_knots(tight, row.quantity, n) if row.place == "knots" else inside
-            most = bound / there ** (2 if row.quantity == "tool acceleration" else 1)
+            there = _at_stations(inside) if row.place == "stations" else inside
+            most = numbers.bounds[row.quantity][row.joint] / there ** (2 if row.quantity == "tool acceleration" else 1)
         high.append(most)
         low.append(np.full(most.size, -np.inf) if row.quantity in _ONE_SIDED else -most)
     return np.concatenate(low), np.concatenate(high)
 
 
-def _at_knots(tight: Excess, quantity: str, intervals: int) -> Array:
-    """(n + 1,) the larger number of a knot's two intervals."""
-    if quantity not in tight:
-        return np.ones(intervals + 1)
-    own = tight[quantity]
-    return np.maximum(np.append(own, 1.0), np.append(1.0, own))
+def _top_speed(numbers: Numbers, tight: Excess) -> Array:
+    """(2 n + 1,) of v at the stations."""
+    none = np.ones(numbers.parameters["ds"].size)
+    tops = [speed / _at_stations(tight.get(name, none)) for name, speed in numbers.top_speeds.items()]
+    least: Array = np.min(tops, axis=0)
+    return least
+
+
+def _at_stations(inside: Array) -> Array:
+    """(2 n + 1,) from (n,): in the middle of an interval its own number, at a knot the larger of its two intervals'."""
+    found = np.empty(2 * inside.size + 1)
+    found[1::2] = inside
+    found[::2] = np.maximum(np.append(inside, 0.0), np.append(0.0, inside))
+    return found

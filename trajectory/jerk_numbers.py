@@ -1,4 +1,4 @@
-"""The numbers of the jerk-limited problem: what a path, a robot and its limits are at the knots, exactly."""
+"""The numbers of the jerk-limited problem: what a path, a robot and its limits are at the stations, exactly."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ class Numbers(NamedTuple):
     """As the problem takes them.
 
     Attributes:
-        parameters: by the problem's names; (n + 1, m) of joints at knots.
-        top_speeds: (n + 1,) of v, by the quantity that bounds it.
+        parameters: by the problem's names; of joints (2 n + 1, m) at the stations, for jerk (n + 1, m) at the knots.
+        top_speeds: (2 n + 1,) of v, by the quantity that bounds it.
         bounds: (m,), or (1,) for the tool: highest of a quantity's rows; the lowest is its negative, where it has one.
     """
 
@@ -44,12 +44,12 @@ class Numbers(NamedTuple):
 
 
 def numbers_of(robot: Mechanism, path: Path, limits: Limits, payload: float, position: Array, scale: Scale) -> Numbers:
-    """At the knots `position` (n + 1,), arc lengths [m]; an error where a limit is for another number of joints."""
+    """At the stations `position` (2 n + 1,) [m]; an error where a limit is for another number of joints."""
     derivatives = path.evaluate(position, 3)
     joints = actuator_motion(robot, *derivatives)
     count = len(robot.actuator_names)
     given = {f: limit for f in ("speed", "acceleration", "jerk") if (limit := limits.of_joints(f, count)) is not None}
-    found = Numbers({"ds": np.diff(position) / path.length}, {}, {})
+    found = Numbers({"ds": np.diff(position[::2]) / path.length}, {}, {})
     with np.errstate(divide="ignore"):  # joints at rest bound nothing
         fastest = given["speed"] / np.abs(joints.first)
     found.top_speeds["joint speed"] = fastest.min(axis=-1) / scale.speed
@@ -58,9 +58,9 @@ def numbers_of(robot: Mechanism, path: Path, limits: Limits, payload: float, pos
         found.parameters["acceleration_v"] = joints.second * scale.speed**2 / given["acceleration"]
         found.bounds["joint acceleration"] = np.ones(count)
     if "jerk" in given:
-        found.parameters["jerk_j"] = joints.first * scale.jerk / given["jerk"]
-        found.parameters["jerk_va"] = 3 * joints.second * scale.speed * scale.acceleration / given["jerk"]
-        found.parameters["jerk_vvv"] = joints.third * scale.speed**3 / given["jerk"]
+        found.parameters["jerk_j"] = joints.first[::2] * scale.jerk / given["jerk"]
+        found.parameters["jerk_va"] = 3 * joints.second[::2] * scale.speed * scale.acceleration / given["jerk"]
+        found.parameters["jerk_vvv"] = joints.third[::2] * scale.speed**3 / given["jerk"]
         found.bounds["joint jerk"] = np.ones(count)
     _add_torque(found, robot, limits, payload, derivatives, scale)
     if "torque at speed" in found.bounds:

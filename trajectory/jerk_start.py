@@ -18,7 +18,11 @@ _POWERS = {"joint speed": 1.0, "tool speed": 1.0, "joint jerk": 3.0}  # of the s
 
 
 class Start(NamedTuple):
-    """Times, arc length, speed and acceleration at the knots, (n + 1,) each [s, m, m/s, m/s^2]."""
+    """A motion along the path at its stations: the knots, and the middle of each interval's time.
+
+    Attributes:
+        times, position, speed, acceleration: (2 n + 1,) [s, m, m/s, m/s^2].
+    """
 
     times: Array
     position: Array
@@ -28,17 +32,25 @@ class Start(NamedTuple):
     @property
     def intervals(self) -> int:
         """n."""
-        return self.times.size - 1
+        return self.times.size // 2
+
+    @property
+    def jerk(self) -> tuple[Array, Array]:
+        """(n,) where each interval starts, and where it ends: of the parabola through its three accelerations."""
+        first, middle, last = self.acceleration[:-1:2], self.acceleration[1::2], self.acceleration[2::2]
+        step = np.diff(self.times[::2])
+        return (4 * middle - 3 * first - last) / step, (first - 4 * middle + 3 * last) / step
 
 
 def polynomial_start(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int) -> Start:
-    """The quintic from rest to rest with zero s'' at both ends, about as fast as its knots keep their limits."""
-    u = np.linspace(0.0, 1.0, intervals + 1)
+    """The quintic from rest to rest with zero s'' at both ends, about as fast as its stations keep their limits."""
+    u = np.linspace(0.0, 1.0, 2 * intervals + 1)
     along = PathMotion(
         path.length * u**3 * (10 - 15 * u + 6 * u**2),
         path.length * 30 * u**2 * (1 - u) ** 2,
         path.length * 60 * u * (1 - u) * (1 - 2 * u),
         path.length * 60 * (1 - 6 * u + 6 * u**2),
+        path.length * 360 * (2 * u - 1),
     )
     tool = pose_motion(path, along)
     time = 1.0
@@ -64,7 +76,7 @@ def _stretch(robot: Mechanism, tool: PoseMotion, limits: Limits, payload: float)
 
 
 def denser_start(law: TimeLaw, over: Array, intervals: int) -> Start:
-    """A law's own motion at new knots: most at equal times, the others where limits were exceeded between knots.
+    """A law's own motion at new knots: most at equal times, the others where limits were exceeded between stations.
 
     What an interval h exceeds grows with h^2: knots in proportion to its root make it even.
 
@@ -78,7 +90,13 @@ def denser_start(law: TimeLaw, over: Array, intervals: int) -> Start:
     if root.any():
         share = (1.0 - _WHERE_EXCEEDED) * share + _WHERE_EXCEEDED * root / root.sum()
     filled = np.concatenate([[0.0], np.cumsum(share)])
-    times = np.interp(np.linspace(0.0, filled[-1], intervals + 1), filled, law.times)
+    return start_of(law, np.interp(np.linspace(0.0, filled[-1], intervals + 1), filled, law.times))
+
+
+def start_of(law: TimeLaw, knots: Array) -> Start:
+    """A law's own motion at knots (n + 1,) of time, from the first to the last of its own [s]."""
+    times = np.empty(2 * knots.size - 1)
+    times[::2], times[1::2] = knots, (knots[1:] + knots[:-1]) / 2
     along = law.at(times)
     position = along.position.copy()
     position[[0, -1]] = law.position[[0, -1]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -52,28 +53,53 @@ def travelled(derivatives: tuple[Array, ...], along: PathMotion) -> PoseMotion:
     return PoseMotion(pose, first * v, second * v**2 + first * a, third * v**3 + 3 * second * v * a + first * j)
 
 
-def largest_rates(along: PathMotion, half: Array) -> tuple[Array, Array, Array]:
-    """Bounds of the first three derivatives' moduli (k,) within `half` of the times of `along`; the third is fixed."""
-    jerk = np.abs(along.jerk)
-    acceleration = np.abs(along.acceleration) + half * jerk
-    return np.abs(along.speed) + half * acceleration, acceleration, jerk
+def largest_speed(along: PathMotion, half: Array) -> Array:
+    """(k,) within `half` of the times of `along`, if its snap is the same there."""
+    steepest = np.abs(along.snap)
+    for rate in (along.jerk, along.acceleration, along.speed):
+        steepest = np.abs(rate) + half * steepest
+    return steepest
 
 
-def steepest_travelled(
-    second: Array, third: Array, fourth: Array, away: Array, rates: tuple[Array, Array, Array]
-) -> Array:
-    """Bounds of the modulus of p(s(t))'s fourth derivative (k, n), by the chain rule, each term bounded.
+def travelled_snap(derivatives: Sequence[Array], fourth: Array, along: PathMotion, half: Array) -> Array:
+    """(2, k, n) bounds of p(s(t))'s fourth derivative within `half` of the times of `along`, by the chain rule.
 
     Args:
-        second, third: (k, n) derivatives of p by s.
-        fourth: (k, n) bounds of the fourth one's modulus wherever s goes.
-        away: (k,) how far s goes from where `second` and `third` are.
-        rates: bounds of the first three derivatives of s, (k,) each.
+        derivatives: of p by s, the first four, (k, n) each, at the times of `along`.
+        fourth: (k, n) how far the last of them may be from that, wherever s goes.
+        along: (k,) s and its time derivatives; its snap is the same within `half`.
+        half: (k,) [s].
     """
-    third = np.abs(third) + away[:, None] * fourth
-    second = np.abs(second) + away[:, None] * third
-    v, a, j = (rate[:, None] for rate in rates)
-    return fourth * v**4 + 6 * third * v**2 * a + second * (4 * v * j + 3 * a**2)
+    away = (half * largest_speed(along, half))[:, None]
+    p1, p2, p3, p4 = _around(derivatives, fourth, away)
+    v, a, j, snap = _around([rate[:, None] for rate in along[1:]], np.zeros((half.size, 1)), half[:, None])
+    square = _times(v, v)
+    terms = [
+        _times(p4, _times(square, square)),
+        _times(p3, _times(_times(square, a), (6.0, 0.0))),
+        _times(p2, _times(_times(v, j), (4.0, 0.0))),
+        _times(p2, _times(_times(a, a), (3.0, 0.0))),
+        _times(p1, snap),
+    ]
+    value, radius = (sum(parts) for parts in zip(*terms, strict=True))
+    return np.stack([value - radius, value + radius])
+
+
+_Ball = tuple[Array | float, Array | float]  # a value, and how far from it the quantity may be
+
+
+def _around(values: Sequence[Array], last: Array, away: Array) -> list[_Ball]:
+    """Each quantity about its value, where the next one is its derivative, by no more than `away` times that."""
+    balls: list[_Ball] = []
+    radius = last
+    for value in reversed(values):
+        balls.insert(0, (value, radius))
+        radius = away * (np.abs(value) + radius)
+    return balls
+
+
+def _times(x: _Ball, y: _Ball) -> _Ball:
+    return x[0] * y[0], np.abs(x[0]) * y[1] + x[1] * (np.abs(y[0]) + y[1])
 
 
 def motion_of(robot: Mechanism, tool: PoseMotion, payload: float) -> Motion:

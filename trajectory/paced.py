@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trajectory.motion import PoseMotion, largest_rates, steepest_travelled, travelled
+from trajectory.motion import PoseMotion, largest_speed, travelled, travelled_snap
 from trajectory.path import Array
 from trajectory.timed import TimedMotion
 from trajectory.timing import TimeLaw
@@ -72,15 +72,15 @@ class PacedMotion:
         """That of the motion."""
         return self.motion.kink
 
-    def steepest_jerk(self, low: Array, high: Array) -> Array:
-        """As `TimedMotion.steepest_jerk`."""
+    def enclose_snap(self, low: Array, high: Array) -> Array:
+        """As `TimedMotion.enclose_snap`."""
         along, half = self.pace.at(0.5 * low + 0.5 * high), (high - low) * (0.5 + _INSIDE)
-        speed, *_ = rates = largest_rates(along, half)
-        away, knots = half * speed, self.motion.times
+        away, knots = half * largest_speed(along, half), self.motion.times
         interval = np.clip(np.searchsorted(knots, along.position, side="right") - 1, 0, knots.size - 2)
         first, last = (np.clip(along.position + d, knots[interval], knots[interval + 1]) for d in (-away, away))
-        _, _, second, third = self.motion.at(along.position)
-        return steepest_travelled(second, third, self.motion.steepest_jerk(first, last), away, rates)
+        least, most = self.motion.enclose_snap(first, last)
+        _, *derivatives = self.motion.at(along.position)
+        return travelled_snap([*derivatives, 0.5 * least + 0.5 * most], 0.5 * (most - least), along, half)
 
 
 def one_sided(knots: Array, tau: Array) -> Array:

@@ -72,8 +72,8 @@ class Path(Protocol):
     def enclose(self, low: Array, high: Array) -> PathBox:
         """Bounds that hold everywhere on intervals (k,) of s, each between two neighbouring knots."""
 
-    def steepest_third(self, s: Array) -> Array:
-        """(k, n) bounds of the modulus of the fourth derivative on the whole pieces around arc lengths (k,)."""
+    def steepest(self, s: Array, order: int) -> Array:
+        """(k, n) bounds of the modulus of a derivative, the fourth or fifth, on the whole pieces around s (k,)."""
 
     def split(self) -> tuple[Path, ...]:
         """Itself or, where the tangent jumps inside, its parts from one jump to the next, to be timed one by one."""
@@ -114,9 +114,9 @@ class Reversed:
         box = self.path.enclose(self.length - high, self.length - low)
         return PathBox(box.low, box.high, -box.first_high, -box.first_low)
 
-    def steepest_third(self, s: Array) -> Array:
-        """As `Path.steepest_third`."""
-        return self.path.steepest_third(self.length - s)
+    def steepest(self, s: Array, order: int) -> Array:
+        """As `Path.steepest`."""
+        return self.path.steepest(self.length - s, order)
 
     def split(self) -> tuple[Path, ...]:
         """The path's own parts, the last one first."""
@@ -160,9 +160,9 @@ class Part:
         """As `Path.enclose`."""
         return self.path.enclose(self.start + low, self.start + high)
 
-    def steepest_third(self, s: Array) -> Array:
-        """As `Path.steepest_third`."""
-        return self.path.steepest_third(self.start + s)
+    def steepest(self, s: Array, order: int) -> Array:
+        """As `Path.steepest`."""
+        return self.path.steepest(self.start + s, order)
 
     def split(self) -> tuple[Path, ...]:
         """As `Path.split`."""

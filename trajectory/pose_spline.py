@@ -93,9 +93,9 @@ class PoseSpline:
             jerk=self.jerk / factor**3,
         )
 
-    def steepest_jerk(self, low: Array, high: Array) -> Array:  # noqa: ARG002
-        """As `TimedMotion.steepest_jerk`: the jerk is constant in each interval."""
-        return np.zeros((low.size, self.ends.shape[-1]))
+    def enclose_snap(self, low: Array, high: Array) -> Array:  # noqa: ARG002
+        """As `TimedMotion.enclose_snap`: the jerk is constant in each interval."""
+        return np.zeros((2, low.size, self.ends.shape[-1]))
 
     @property
     def kink(self) -> float:

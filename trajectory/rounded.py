@@ -19,7 +19,7 @@ from kinematics import InvalidValue
 from kinematics.interpreter import evaluate
 from trajectory.corner import (
     QUINTIC_MOST,
-    SEPTIC_FOURTH,
+    SEPTIC_MOST,
     corner_length,
     quintic,
     septic,
@@ -112,20 +112,21 @@ class RoundedPath:
         slack, rate_slack = _SLACK * (1.0 + np.abs(most)), _SLACK * (1.0 + np.abs(first))
         return PathBox(least - slack, most + slack, slowest - rate_slack, fastest + rate_slack)
 
-    def steepest_third(self, s: Array) -> Array:
-        """As `Path.steepest_third`, from the largest derivatives of S5 and S7 on [0, 1].
+    def steepest(self, s: Array, order: int) -> Array:
+        """As `Path.steepest`, from the largest derivatives of S5 and S7 on [0, 1].
 
-        With a, b, c the first three derivatives of the tangent's angle, the third one of the tangent has the
-        components c - a^3 and 3 a b.
+        With a, b, c, d the first four derivatives of the tangent's angle, the tangent's third one has the components
+        c - a^3 and 3 a b, its fourth one d - 6 a^2 b and a^4 - 3 b^2 - 4 a c.
         """
         piece, _ = self._within(s)
         length, alpha = self._layout.lengths[piece], self._layout.alphas[piece]
-        a, b, c = (alpha * most / length**k for k, most in enumerate(QUINTIC_MOST, start=1))
-        tangent = np.hypot(c + a**3, 3 * a * b)[:, None]
-        bounds = [np.broadcast_to(tangent, (s.size, places(self.pose_names)))]
+        a, b, c, d = (alpha * most / length**k for k, most in enumerate(QUINTIC_MOST, start=1))
+        third = np.hypot(c + a**3, 3 * a * b)
+        tangent = third if order == 4 else np.hypot(d + 6 * a**2 * b, a**4 + 3 * b**2 + 4 * a * c)
+        bounds = [np.broadcast_to(tangent[:, None], (s.size, places(self.pose_names)))]
         for at, values in self._angles:
-            fourth = SEPTIC_FOURTH * np.abs(np.diff(values)) / np.diff(at) ** 4
-            bounds.append(fourth[_span(at, s)][:, None])
+            most = SEPTIC_MOST[order] * np.abs(np.diff(values)) / np.diff(at) ** order
+            bounds.append(most[_span(at, s)][:, None])
         return np.concatenate(bounds, axis=-1)
 
     def _tangent_bounds(self, tangent: Array, middle: Array, low: Array, high: Array) -> Array:

@@ -8,7 +8,7 @@ from typing import Protocol, Self
 import numpy as np
 
 from kinematics import InvalidValue
-from trajectory.motion import PoseMotion, largest_rates, pose_motion, steepest_travelled
+from trajectory.motion import PoseMotion, largest_speed, pose_motion, travelled_snap
 from trajectory.path import Array, Path
 from trajectory.timing import TimeLaw
 
@@ -59,8 +59,8 @@ class TimedMotion(Protocol):
             InvalidValue: the factor is not finite and positive.
         """
 
-    def steepest_jerk(self, low: Array, high: Array) -> Array:
-        """(k, n) bounds of the modulus of the pose's fourth derivative between two times (k,), each of one interval."""
+    def enclose_snap(self, low: Array, high: Array) -> Array:
+        """(2, k, n) bounds of the pose's fourth derivative between two times (k,), each of one interval."""
 
     @property
     def kink(self) -> float:
@@ -125,14 +125,13 @@ class TimedPath:
         """As `TimedMotion.stretched`."""
         return replace(self, law=self.law.stretched(factor))
 
-    def steepest_jerk(self, low: Array, high: Array) -> Array:
-        """As `TimedMotion.steepest_jerk`: the chain rule on p(s(t)), each term bounded."""
+    def enclose_snap(self, low: Array, high: Array) -> Array:
+        """As `TimedMotion.enclose_snap`."""
         along, half = self.law.at(0.5 * low + 0.5 * high), (high - low) * (0.5 + _ROUNDING)
-        speed, *_ = rates = largest_rates(along, half)
-        _, _, second, third = self.path.evaluate(along.position, 3)
-        away = half * speed
+        away = half * largest_speed(along, half)
+        _, *derivatives = self.path.evaluate(along.position, 4)
         first_s, last_s = (np.clip(along.position + d, 0.0, self.path.length) for d in (-away, away))
-        return steepest_travelled(second, third, self._steepest_third(first_s, last_s), away, rates)
+        return travelled_snap(derivatives, self._fourth_slack(derivatives[-1], first_s, last_s, away), along, half)
 
     @property
     def kink(self) -> float:
@@ -145,13 +144,18 @@ class TimedPath:
         jumps = [np.abs(b - a).max() for b, a in zip(before, after, strict=True)]
         return float(max(jumps[0], jumps[1] * self.path.length))
 
-    def _steepest_third(self, low: Array, high: Array) -> Array:
-        """Of all pieces of the path between two arc lengths (k,)."""
+    def _fourth_slack(self, fourth: Array, low: Array, high: Array, away: Array) -> Array:
+        """How far the fourth derivative by s may be, between two arc lengths (k,), from what it is in the middle.
+
+        Where knots of the path lie between, it may jump.
+        """
         knots = np.array(self.path.knots)
-        on_pieces = self.path.steepest_third((knots[1:] + knots[:-1]) / 2)
-        first = np.clip(np.searchsorted(knots, low, side="left") - 1, 0, knots.size - 2)
-        last = np.clip(np.searchsorted(knots, high, side="right") - 1, 0, knots.size - 2)
-        found = on_pieces[first]
+        middles = (knots[1:] + knots[:-1]) / 2
+        most, slope = (self.path.steepest(middles, order) for order in (4, 5))
+        first = np.clip(np.searchsorted(knots, low, side="left") - 1, 0, middles.size - 1)
+        last = np.clip(np.searchsorted(knots, high, side="right") - 1, 0, middles.size - 1)
+        anywhere = most[first]
         for k in range(1, int((last - first).max()) + 1):
-            found = np.maximum(found, on_pieces[np.minimum(first + k, last)])
-        return found
+            anywhere = np.maximum(anywhere, most[np.minimum(first + k, last)])
+        anywhere = anywhere + np.abs(fourth)
+        return np.where((first == last)[:, None], np.minimum(away[:, None] * slope[first], anywhere), anywhere)

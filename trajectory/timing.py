@@ -14,17 +14,18 @@ _ROUNDING = 1e-9  # of the duration or the length
 
 
 class PathMotion(NamedTuple):
-    """Arc length and its time derivatives, each of one shape [m, m/s, m/s^2, m/s^3]."""
+    """Arc length and its time derivatives, each of one shape [m, m/s, m/s^2, m/s^3, m/s^4]."""
 
     position: Array
     speed: Array
     acceleration: Array
     jerk: Array
+    snap: Array
 
 
 @dataclass(frozen=True, eq=False)
 class TimeLaw:
-    """Arc length as a piecewise cubic of time; the third derivative is zero where s'' is piecewise constant.
+    """Arc length as a piecewise quartic of time: s''' is linear in each interval.
 
     Attributes:
         name: of the method that found it.
@@ -32,7 +33,8 @@ class TimeLaw:
         position: (n + 1,) s at the knots [m].
         speed: (n + 1,) s' at the knots, never negative [m/s].
         acceleration: (n,) s'' where each interval starts [m/s^2].
-        jerk: (n,) s''' of each interval [m/s^3].
+        jerk: (n,) s''' where each interval starts [m/s^3].
+        snap: (n,) s'''' of each interval [m/s^4].
 
     Raises:
         InvalidShape, InvalidValue: arrays that do not fit together, are not finite or do not join at the knots.
@@ -44,11 +46,12 @@ class TimeLaw:
     speed: Array
     acceleration: Array
     jerk: Array
+    snap: Array
 
     def __post_init__(self) -> None:
-        for field in ("times", "position", "speed", "acceleration", "jerk"):
+        for field in ("times", "position", "speed", "acceleration", "jerk", "snap"):
             array = np.array(getattr(self, field), dtype=float)
-            expected = np.shape(self.times)[0] - (field in ("acceleration", "jerk"))
+            expected = np.shape(self.times)[0] - (field in ("acceleration", "jerk", "snap"))
             if array.shape != (expected,):
                 raise InvalidShape(f"TimeLaw {field}", [str(k) for k in range(expected)], array.shape)
             if not np.isfinite(array).all():
@@ -81,7 +84,8 @@ class TimeLaw:
             at = float(position[int(np.argmin(sums))])
             raise InvalidValue("TimeLaw speed", f"rest all through the interval at s = {at:.6g} m", "a speed > 0 m/s")
         times = np.concatenate([[0.0], np.cumsum(2 * steps / sums)])
-        return cls(name, times, position, speed, np.diff(speed) * sums / (2 * steps), np.zeros_like(steps))
+        none = np.zeros_like(steps)
+        return cls(name, times, position, speed, np.diff(speed) * sums / (2 * steps), none, none)
 
     @property
     def duration(self) -> float:
@@ -125,13 +129,16 @@ class TimeLaw:
             speed=self.speed / factor,
             acceleration=self.acceleration / factor**2,
             jerk=self.jerk / factor**3,
+            snap=self.snap / factor**4,
         )
 
     def _in_interval(self, interval: Array, since: Array) -> PathMotion:
-        s, v, a, j = (x[interval] for x in (self.position, self.speed, self.acceleration, self.jerk))
-        position = s + since * (v + since * (a / 2 + since * j / 6))
-        speed, acceleration = v + since * (a + since * j / 2), a + since * j
-        return PathMotion(np.clip(position, self.position[0], self.position[-1]), speed, acceleration, j)
+        coefficients = (self.position, self.speed, self.acceleration, self.jerk, self.snap)
+        s, v, a, j, d = (x[interval] for x in coefficients)
+        position = s + since * (v + since * (a / 2 + since * (j / 6 + since * d / 24)))
+        speed = v + since * (a + since * (j / 2 + since * d / 6))
+        acceleration, jerk = a + since * (j + since * d / 2), j + since * d
+        return PathMotion(np.clip(position, self.position[0], self.position[-1]), speed, acceleration, jerk, d)
 
     def _require_joined(self) -> None:
         """Each interval must end where the next one starts."""

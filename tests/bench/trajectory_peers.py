@@ -17,7 +17,7 @@ from tests.bench.timing.cases import Case, others, reference
 from tests.bench.timing.measure import LONG, REPEATS, Row, measured
 from trajectory import free_motion, jerk_limited, lower_bound, time_optimal
 
-FINE = 320  # intervals; the law's own number is the `jerk` law's first row
+FINE = 400  # intervals; the law's own number is the `jerk` law's first row
 OURS = {  # law, and whether it keeps the jerk limit
     "`toppra` law": (time_optimal, False),
     "`jerk` law": (jerk_limited, True),

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
 from kinematics import Heli4
-from trajectory import AdeptCycle, Cycle, Limits, Path, TimedPath, there_and_back, time_optimal
+from trajectory import AdeptCycle, Cycle, Limits, Path, TimedPath, TimeLaw, there_and_back, time_optimal
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class Straight:
     def knots(self) -> tuple[float, ...]:
         return (0.0, self.length)
 
-    def steepest_third(self, s: np.ndarray) -> np.ndarray:
+    def steepest(self, s: np.ndarray, order: int) -> np.ndarray:  # noqa: ARG002
         return np.zeros((s.size, 4))
 
     def as_dict(self) -> dict[str, object]:
@@ -62,13 +63,28 @@ class Joined:
     def knots(self) -> tuple[float, ...]:
         return (*self.first.knots, *(self.first.length + s for s in self.second.knots[1:]))
 
-    def steepest_third(self, s: np.ndarray) -> np.ndarray:
-        first = self.first.steepest_third(np.minimum(s, self.first.length))
-        second = self.second.steepest_third(np.clip(s - self.first.length, 0.0, self.second.length))
+    def steepest(self, s: np.ndarray, order: int) -> np.ndarray:
+        first = self.first.steepest(np.minimum(s, self.first.length), order)
+        second = self.second.steepest(np.clip(s - self.first.length, 0.0, self.second.length), order)
         return np.where((s <= self.first.length)[:, None], first, second)
 
     def as_dict(self) -> dict[str, object]:
         return {}
+
+
+def _s_curve(path: Path, duration: float) -> TimedPath:
+    """s''' of +j, -j, -j, +j for a quarter of the time each: rest to rest, s'' continuous and zero at both ends."""
+    quarter = duration / 4
+    j = path.length / (2 * quarter**3)
+    position = j * quarter**3 * np.array([0, 1 / 6, 1, 11 / 6, 2])
+    speed = j * quarter**2 * np.array([0, 0.5, 1, 0.5, 0])
+    acceleration, jerk = j * quarter * np.array([0, 1, 0, -1]), j * np.array([1, -1, -1, 1])
+    return TimedPath(path, TimeLaw("S", np.arange(5) * quarter, position, speed, acceleration, jerk, np.zeros(4)))
+
+
+@pytest.fixture(scope="session")
+def s_curve() -> Callable[[Path, float], TimedPath]:
+    return _s_curve
 
 
 @pytest.fixture(scope="session")

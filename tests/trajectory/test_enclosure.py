@@ -2,25 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from kinematics import Heli4
 from kinematics.drive_train import DriveTrain
-from trajectory import AdeptCycle, Limits, Reversed, TimedPath, TimeLaw, motion_of, time_optimal
+from trajectory import AdeptCycle, Limits, Path, Reversed, TimedPath, jerk_limited, motion_of, time_optimal
 from trajectory.enclosure import slack
-
-
-def smooth(path: AdeptCycle) -> TimedPath:
-    """Jerk-limited: s''' of +j, -j, -j, +j for a quarter of 0.2 s each."""
-    quarter = 0.05
-    j = path.length / (2 * quarter**3)
-    s = j * quarter**3 * np.array([0, 1 / 6, 1, 11 / 6, 2])
-    v = j * quarter**2 * np.array([0, 0.5, 1, 0.5, 0])
-    at = np.arange(5) * quarter
-    return TimedPath(
-        path, TimeLaw("smooth", at, s, v, j * quarter * np.array([0, 1, 0, -1]), j * np.array([1, -1, -1, 1]))
-    )
 
 
 def parts(timed: TimedPath, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -28,10 +19,18 @@ def parts(timed: TimedPath, count: int) -> tuple[np.ndarray, np.ndarray]:
     return edges[:, :-1].ravel(), edges[:, 1:].ravel()
 
 
-@pytest.fixture(scope="module", params=["smooth", "toppra", "sharp corners, way back"])
-def timed(request: pytest.FixtureRequest, robot: Heli4, path: AdeptCycle, limits: Limits) -> TimedPath:
-    if request.param == "smooth":
-        return smooth(path)
+@pytest.fixture(scope="module", params=["S", "jerk", "toppra", "sharp corners, way back"])
+def timed(
+    request: pytest.FixtureRequest,
+    robot: Heli4,
+    path: AdeptCycle,
+    limits: Limits,
+    s_curve: Callable[[Path, float], TimedPath],
+) -> TimedPath:
+    if request.param == "S":
+        return s_curve(path, 0.2)
+    if request.param == "jerk":
+        return jerk_limited(robot, path, replace(limits, jerk=1e5), 1.0, 40)
     if request.param == "toppra":
         return time_optimal(robot, path, limits, 1.0, 1000)
     return time_optimal(robot, Reversed(AdeptCycle(blend=0.004, turn=-2.0, heading=0.4)), limits, 1.0, 1000)
@@ -56,6 +55,20 @@ def test_the_slack_shrinks_with_the_parts(robot: Heli4, timed: TimedPath) -> Non
         assert np.median(b) < 0.3 * np.median(a)
 
 
+def test_the_fourth_derivative_stays_within_bounds_that_close_in_with_the_parts(timed: TimedPath) -> None:
+    widths = []
+    for count in (4, 40):
+        low, high = parts(timed, count)
+        least, most = timed.enclose_snap(low, high)
+        for share in (0.1, 0.5, 0.9):
+            t, h = low + share * (high - low), 0.05 * (high - low)
+            snap = (timed.at(t + h).jerk - timed.at(t - h).jerk) / (2 * h[:, None])  # a mean over the part
+            room = 1e-6 * np.abs(timed.at(t).jerk).max() / h[:, None]
+            assert ((least - room <= snap) & (snap <= most + room)).all()
+        widths.append(np.median(most - least, axis=0).max())
+    assert widths[1] < 0.15 * widths[0]
+
+
 def test_the_slack_of_a_saturated_torque_is_a_small_share_of_it(robot: Heli4, path: AdeptCycle, limits: Limits) -> None:
     timed = time_optimal(robot, path, limits, 1.0, 1000)
     low, high = parts(timed, 10)
@@ -63,9 +76,11 @@ def test_the_slack_of_a_saturated_torque_is_a_small_share_of_it(robot: Heli4, pa
     assert (np.abs(middle.torque) + bounds.torque).max() < 1.0001 * np.abs(middle.torque).max()
 
 
-def test_friction_is_bounded_where_a_joint_turns_back(path: AdeptCycle) -> None:
+def test_friction_is_bounded_where_a_joint_turns_back(
+    path: AdeptCycle, s_curve: Callable[[Path, float], TimedPath]
+) -> None:
     rubbing = Heli4(inertia=Heli4.Inertia(drive_train=DriveTrain(coulomb=3.0, viscous=0.4)))
-    timed = smooth(path)
+    timed = s_curve(path, 0.2)
     low, high = parts(timed, 500)
     bounds = slack(rubbing, timed, 1.0, low, high).motion
     middle = motion_of(rubbing, timed.at(0.5 * low + 0.5 * high), 1.0)

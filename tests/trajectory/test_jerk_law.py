@@ -53,10 +53,10 @@ def ratios_at(robot: Mechanism, mended: Repaired, limits: Limits, payload: float
 
 def test_the_reference_half_cycle_takes_at_most_132_5_ms(mended: Repaired) -> None:
     assert mended.motion.duration <= 0.1325
-    assert mended.factor < 1.004
-    peaks = mended.verification.peak_over_limit
-    assert max(peaks.values()) <= 1.0
-    assert min(peaks["torque"], peaks["joint jerk"]) > 0.999
+    assert mended.factor < 1.0001
+    peaks, proved = mended.verification.peak_over_limit, mended.verification.proved
+    assert max(peaks.values()) <= max(proved.values()) <= 1.0
+    assert min(peaks["torque"], peaks["joint jerk"]) > 0.9998
 
 
 def test_no_limit_is_exceeded_at_any_of_many_random_times(robot: Heli4, mended: Repaired) -> None:
@@ -226,7 +226,7 @@ def test_a_torque_limit_below_the_weight_has_no_law(robot: Heli4, path: AdeptCyc
 def test_an_answer_that_has_not_converged_is_no_answer(
     robot: Heli4, path: AdeptCycle, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setitem(jerk_problem._OPTIONS, "ipopt", {**jerk_problem._OPTIONS["ipopt"], "max_iter": 5})
+    monkeypatch.setitem(jerk_problem._OPTIONS, "max_iter", 5)
     jerk_problem.solver_of.cache_clear()
     with pytest.raises(TimingFailed, match="Maximum_Iterations_Exceeded"):
         jerk_limited(robot, path, SMOOTH, 1.0, QUICK)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from itertools import pairwise
 
@@ -78,6 +79,20 @@ def test_each_derivative_is_the_finite_difference_of_the_one_below(order: int) -
     derivatives = BENT.evaluate(s, 4)
     difference = (BENT.evaluate(s + h, 4)[order - 1] - BENT.evaluate(s - h, 4)[order - 1]) / (2 * h)
     assert np.abs(difference - derivatives[order]).max() < 1e-6 * np.abs(derivatives[order]).max()
+
+
+@pytest.mark.parametrize("order", [4, 5])
+def test_the_steepest_bounds_hold_on_each_piece_and_are_not_far_off(order: int) -> None:
+    for start, stop in itertools.pairwise(BENT.knots):
+        h = 1e-5 * (stop - start)
+        s = np.linspace(start + 2 * h, stop - 2 * h, 2001)
+        if order == 4:
+            found = np.abs(BENT.evaluate(s, 4)[4])
+        else:
+            found = np.abs(BENT.evaluate(s + h, 4)[4] - BENT.evaluate(s - h, 4)[4]) / (2 * h)
+        bounds = BENT.steepest(s, order)
+        assert (found <= bounds * (1.0 + 1e-5) + 1e-6).all()
+        assert (found[:, :3].max() >= 0.1 * bounds[:, :3].max()) or bounds[:, :3].max() == 0.0
 
 
 def test_curvature_and_its_slope_are_continuous_where_the_pieces_meet() -> None:

@@ -157,7 +157,8 @@ def with_swing(law: TimeLaw, start: float, quarter: float, size: float) -> TimeL
     speed = np.concatenate([[0.0], np.cumsum(steps * acceleration)])
     ways = steps * (speed[:-1] + steps * acceleration / 2)
     position = np.concatenate([[0.0], np.cumsum(ways)])
-    return TimeLaw(law.name, times, position, np.maximum(speed, 0.0), acceleration, np.zeros_like(steps))
+    none = np.zeros_like(steps)
+    return TimeLaw(law.name, times, position, np.maximum(speed, 0.0), acceleration, none, none)
 
 
 @pytest.mark.parametrize("turn", [5e-5, 1.5e-4, 4e-3])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from trajectory import (
     AdeptCycle,
     Limits,
     LimitsExceeded,
+    Path,
     Repaired,
     Reversed,
     TimedPath,
@@ -33,15 +35,8 @@ def repaired(robot: Heli4, limits: Limits, timed: TimedPath) -> Repaired:
 
 
 @pytest.fixture(scope="module")
-def smooth(path: AdeptCycle) -> TimedPath:
-    """Jerk-limited: s''' of +j, -j, -j, +j for a quarter of 0.2 s each."""
-    quarter = 0.05
-    j = path.length / (2 * quarter**3)
-    t = np.arange(5) * quarter
-    s = j * quarter**3 * np.array([0, 1 / 6, 1, 11 / 6, 2])
-    v = j * quarter**2 * np.array([0, 0.5, 1, 0.5, 0])
-    law = TimeLaw("smooth", t, s, v, j * quarter * np.array([0, 1, 0, -1]), j * np.array([1, -1, -1, 1]))
-    return TimedPath(path, law)
+def smooth(path: AdeptCycle, s_curve: Callable[[Path, float], TimedPath]) -> TimedPath:
+    return s_curve(path, 0.2)
 
 
 @pytest.fixture(scope="module")
