@@ -30,6 +30,7 @@ from trajectory.torque_terms import torque_by_rate
 
 _CHORDS = 16  # of at most half a circle: they cut off less than 0.5 % of the cap
 _STEEPEST = 0.1  # margin by 1 - x
+_ROOM = 1e-4  # of a limit, where the motion leaves so much, for what is between the knots
 _ROUNDING = 1e-9  # of a limit, and of the largest acceleration
 
 
@@ -75,8 +76,8 @@ def _highest_around(used: Array) -> Array:
     around = np.concatenate([used[:, :1], used, used[:, -1:]], axis=1)
     highest = np.maximum(np.maximum(around[:, :-2], around[:, 2:]), used)
     bend = np.abs(used[:, :-2] - 2.0 * used[:, 1:-1] + used[:, 2:])
-    between = highest + np.concatenate([bend[:, :1], bend, bend[:, -1:]], axis=1) / 8.0  # as of a parabola
-    return np.maximum(np.minimum(between, 1.0), used)
+    between = highest + np.concatenate([bend[:, :1], bend, bend[:, -1:]], axis=1) / 8.0  # of a parabola
+    return np.maximum(np.minimum(between + _ROOM, 1.0), used)
 
 
 def tangent_rows(rows: Rows, jerk: JerkRows, near: Array, middle: Array, margin: float) -> LinearRows:
