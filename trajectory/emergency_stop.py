@@ -7,7 +7,6 @@ acceleration (`smooth_braking`), and else in the shortest way, with steps where 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,7 +19,6 @@ from trajectory.paced import PacedMotion
 from trajectory.path import Array
 from trajectory.smooth_braking import smooth_braking
 from trajectory.timed import TimedMotion
-from trajectory.timing import TimeLaw
 from trajectory.verification import Verification, verify
 
 MARGINS = (
@@ -77,16 +75,9 @@ def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: L
     if all(getattr(limits, name) is None for name in _BRAKING):
         raise InvalidValue("Limits for an emergency stop", limits.as_dict(), f"one of {', '.join(_BRAKING)}")
     kept, before = replace(limits, rms_torque=None), timed.at(np.array(start))
-    for pace in _paces(robot, timed, start, kept, payload):
-        motion = PacedMotion(timed, pace)
-        found = verify(robot, motion, kept, payload, before)
-        if found.ok:
-            return EmergencyStop(motion, start, found)
-    raise LimitsExceeded(found.failures, 1.0)
-
-
-def _paces(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float) -> Iterator[TimeLaw]:
-    if limits.jerk is None:
-        yield braking(robot, timed, start, limits, payload)
-    else:
-        yield from (smooth_braking(robot, timed, start, limits, payload, margin) for margin in MARGINS)
+    pace = (braking if limits.jerk is None else smooth_braking)(robot, timed, start, kept, payload)
+    motion = PacedMotion(timed, pace)
+    found = verify(robot, motion, kept, payload, before)
+    if found.failures:
+        raise LimitsExceeded(found.failures, 1.0)
+    return EmergencyStop(motion, start, found)

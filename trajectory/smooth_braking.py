@@ -25,7 +25,7 @@ from trajectory.motion import motion_of
 from trajectory.paced import one_sided
 from trajectory.path import Array
 from trajectory.smooth_braking_rows import braking_rows
-from trajectory.smooth_pace import INSTANTS, SLOW, Pace, least_pace
+from trajectory.smooth_pace import INSTANTS, Pace, least_pace
 from trajectory.timed import TimedMotion
 from trajectory.timing import TimeLaw
 from trajectory.usage import uses
@@ -35,19 +35,20 @@ STEPS = 100  # of the braking, at least
 _BEYOND = 0.25  # of them as many again, towards the end of the motion
 _LATER = 10  # steps from there to the end of the motion
 _ROUNDS = 12
-_SETTLED = 1e-2  # relative, of the mean square
+_MARGIN = 4e-3  # of the limits, to keep them between the knots too
+_SLOW = 0.05  # pace from which a constant jerk leads to rest
+_SETTLED = 0.05  # relative, of the way
 _ROUNDING = 1e-9  # of the way, a limit or the largest acceleration
-_HIGHER = 0.01  # a guess on new knots is higher than the answer on the old ones: a tangent at too low an x forbids more
+_HIGHER = (
+    0.001  # a guess on new knots is higher than the answer on the old ones: a tangent at too low an x forbids more
+)
 
 
-def smooth_braking(
-    robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float, margin: float
-) -> TimeLaw:
+def smooth_braking(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float) -> TimeLaw:
     """The time of the motion as a law of the time since `start`.
 
     Args:
         robot, timed, start, limits, payload: as for `emergency_stop`, with a limit of the jerk.
-        margin: share of the limits that is kept in hand, less of it the less is braked.
 
     Raises:
         LimitsExceeded: the motion breaks a limit after `start`.
@@ -56,30 +57,28 @@ def smooth_braking(
     _require_kept(robot, timed, start, limits, payload)
     asked = {**limits.as_dict(), "payload": payload, "start": start}
     coarse = np.linspace(start, timed.duration, COARSE + 1)
-    before = _least(robot, timed, Pace(coarse, np.ones_like(coarse), np.zeros_like(coarse)), limits, payload, margin)
+    before = _least(robot, timed, Pace(coarse, np.ones_like(coarse), np.zeros_like(coarse)), limits, payload)
     for _ in range(_ROUNDS):
         law = None if before is None else _law(before)
         if before is None or law is None:
             break
         knots, last = _knots(timed, start, law.position[-1])
         guess = np.minimum(np.interp(knots, before.tau, before.x) + _HIGHER, 1.0)
-        pace = _least(robot, timed, Pace(knots, guess, np.interp(knots, before.tau, before.b)), limits, payload, margin)
-        if pace is not None and abs(pace.square - before.square) <= _SETTLED * before.square:
-            law = _law(pace)
-            if law is not None and law.position[-1] <= last:
-                return law
+        pace = _least(robot, timed, Pace(knots, guess, np.interp(knots, before.tau, before.b)), limits, payload)
+        found = None if pace is None else _law(pace)
+        if found is not None and found.position[-1] <= last:
+            if abs(found.position[-1] - law.position[-1]) <= _SETTLED * (law.position[-1] - start):
+                return found
         before = pace
     raise TimingFailed("emergency stop", asked, "no pace to rest" if before is None else "no pace that settles")
 
 
-def _least(
-    robot: Mechanism, timed: TimedMotion, near: Pace, limits: Limits, payload: float, margin: float
-) -> Pace | None:
+def _least(robot: Mechanism, timed: TimedMotion, near: Pace, limits: Limits, payload: float) -> Pace | None:
     """The pace on the knots of a guess."""
     tau = near.tau
     instants = one_sided(tau, tau[:-1, None] + np.diff(tau)[:, None] * INSTANTS)
     rows = braking_rows(robot, motion_of(robot, timed.at(instants), payload), limits, payload)
-    return least_pace(*rows, near, margin)
+    return least_pace(*rows, near, _MARGIN)
 
 
 def _require_kept(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float) -> None:
@@ -118,7 +117,7 @@ def _law(pace: Pace) -> TimeLaw | None:
         root = v**2 + 2.0 * mean * step  # of step = v h + mean h^2 / 2
         h = 2.0 * step / (v + math.sqrt(max(root, 0.0)))
         after = v + 0.5 * (second[k] + second[k + 1]) * h
-        if root <= 0.0 or after < SLOW:
+        if root <= 0.0 or after < _SLOW:
             to_go = -v / second[k] * v * 2.0 / 3.0 if second[k] < 0.0 else math.inf
             if tau[k] + to_go <= tau[-1]:
                 return _to_rest(tau, second[: k + 1], np.array(times), np.array(speeds), to_go)

@@ -12,7 +12,7 @@ from trajectory.path import Array
 from trajectory.smooth_braking_rows import JerkRows, LinearRows, Rows, tangent_rows
 
 INSTANTS = np.linspace(0.0, 1.0, 9)  # of each interval, where its rows stand
-SLOW = 0.05  # pace: slower ones have their tangents here
+_LOWEST = 0.01  # pace: slower ones have their tangents here
 _CONVERGED = 1e-3  # relative, of the mean square
 _ROUNDS = 50
 _NEAR = 0.02  # of a limit: rows that are so close to it are in the first programme
@@ -57,7 +57,7 @@ def least_pace(rows: Rows, jerk: JerkRows, near: Pace, margin: float) -> Pace | 
 
 def _with_tangents(rows: Rows, jerk: JerkRows, near: Pace, margin: float) -> Pace | None:
     """With the tangents at `near`. Few rows matter: those over which an answer without them goes come in."""
-    ends = np.maximum(near.x, SLOW**2)
+    ends = np.maximum(near.x, _LOWEST**2)
     pace = np.sqrt(ends)
     inside = (1.0 - INSTANTS) * ends[:-1, None] + INSTANTS * ends[1:, None]
     linear = tangent_rows(rows, jerk, inside, 0.5 * (pace[1:] + pace[:-1]), margin)
