@@ -37,7 +37,7 @@ _LATER = 10  # steps from there to the end of the motion
 _ROUNDS = 12
 _MARGIN = 4e-3  # of the limits, to keep them between the knots too
 _SLOW = 0.05  # pace from which a constant jerk leads to rest
-_SETTLED = 0.05  # relative, of the way
+_SETTLED = 0.03  # of the way, by which it may differ from what the knots were made for
 _ROUNDING = 1e-9  # of the way, a limit or the largest acceleration
 _HIGHER = (
     0.001  # a guess on new knots is higher than the answer on the old ones: a tangent at too low an x forbids more
@@ -66,9 +66,10 @@ def smooth_braking(robot: Mechanism, timed: TimedMotion, start: float, limits: L
         guess = np.minimum(np.interp(knots, before.tau, before.x) + _HIGHER, 1.0)
         pace = _least(robot, timed, Pace(knots, guess, np.interp(knots, before.tau, before.b)), limits, payload)
         found = None if pace is None else _law(pace)
-        if found is not None and found.position[-1] <= last:
-            if abs(found.position[-1] - law.position[-1]) <= _SETTLED * (law.position[-1] - start):
-                return found
+        way = law.position[-1] - start
+        rest = math.inf if found is None else found.position[-1]
+        if found is not None and rest <= last and abs(rest - law.position[-1]) <= _SETTLED * way:
+            return found
         before = pace
     raise TimingFailed("emergency stop", asked, "no pace to rest" if before is None else "no pace that settles")
 
