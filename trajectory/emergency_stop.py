@@ -7,6 +7,7 @@ acceleration (`smooth_braking`), and else in the shortest way, with steps where 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,12 +20,14 @@ from trajectory.paced import PacedMotion
 from trajectory.path import Array
 from trajectory.smooth_braking import smooth_braking
 from trajectory.timed import TimedMotion
+from trajectory.timing import TimeLaw
 from trajectory.verification import Verification, verify
 
 MARGINS = (
     4e-3,
     2e-2,
 )  # of the limits, for the jerk-limited pace to keep them between its knots too; the first that does
+_MARGINS = (4e-3, 1e-2, 3e-2)  # of the limits: the first with which they are proved to hold between the knots too
 _BRAKING = ("acceleration", "torque", "tool_acceleration", "jerk")
 
 
@@ -56,7 +59,7 @@ class EmergencyStop:
 def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float) -> EmergencyStop:
     """A stop on the motion's own way, within every limit but the RMS torque's, which is of whole ways.
 
-    Without a limit of the jerk it is the shortest one; with one, that of least mean square of the pace over the way.
+    Without a limit of the jerk it is the shortest one; with one, it makes the mean square of the pace over the way small.
 
     Args:
         robot: any mechanism with the motion's kind of pose.
@@ -75,9 +78,16 @@ def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: L
     if all(getattr(limits, name) is None for name in _BRAKING):
         raise InvalidValue("Limits for an emergency stop", limits.as_dict(), f"one of {', '.join(_BRAKING)}")
     kept, before = replace(limits, rms_torque=None), timed.at(np.array(start))
-    pace = (braking if limits.jerk is None else smooth_braking)(robot, timed, start, kept, payload)
-    motion = PacedMotion(timed, pace)
-    found = verify(robot, motion, kept, payload, before)
-    if found.failures:
-        raise LimitsExceeded(found.failures, 1.0)
-    return EmergencyStop(motion, start, found)
+    for pace in _paces(robot, timed, start, kept, payload):
+        motion = PacedMotion(timed, pace)
+        found = verify(robot, motion, kept, payload, before)
+        if found.ok:
+            return EmergencyStop(motion, start, found)
+    raise LimitsExceeded(found.failures, 1.0)
+
+
+def _paces(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float) -> Iterator[TimeLaw]:
+    if limits.jerk is None:
+        yield braking(robot, timed, start, limits, payload)
+    else:
+        yield from (smooth_braking(robot, timed, start, limits, payload, margin) for margin in _MARGINS)

@@ -1,14 +1,14 @@
 """The pace of a stop on a motion's own way that keeps the limits of the jerk too.
 
 The motion p(tau) is travelled at a pace tau(t) that never rises, from 1 to 0 with zero tau'' at both ends, tau'''
-constant in each interval. Of all such paces it has the least mean of x = tau'^2 over the way: the least energy of
-motion, wherever something is met. Without limits of the jerk that is the pace of `braking`, which has the least x
+constant in each interval. What it makes small is the mean of x = tau'^2 over the way: the energy of motion, wherever
+something is met. Without limits of the jerk that is the pace of `braking`, which has the least x
 everywhere.
 
 The limits are linear in x and tau'' once their tangents stand (`smooth_braking_rows`): a linear programme finds the
 pace, new tangents at its answer the next one, until x falls no more (`smooth_pace`). The motion itself keeps the rows
 of the first programme, so there is an answer from any instant of any motion within its limits. The knots then stand
-where that pace needs them, closer together towards where it rests, and all is done again until that place stays.
+where that pace needs them, closer together towards where it rests, and all is done again until that place stays. The answer is a local one, on its knots.
 """
 
 from __future__ import annotations
@@ -35,20 +35,20 @@ STEPS = 100  # of the braking, at least
 _BEYOND = 0.25  # of them as many again, towards the end of the motion
 _LATER = 10  # steps from there to the end of the motion
 _ROUNDS = 12
-_MARGIN = 4e-3  # of the limits, to keep them between the knots too
 _SLOW = 0.05  # pace from which a constant jerk leads to rest
 _SETTLED = 0.03  # of the way, by which it may differ from what the knots were made for
 _ROUNDING = 1e-9  # of the way, a limit or the largest acceleration
-_HIGHER = (
-    0.001  # a guess on new knots is higher than the answer on the old ones: a tangent at too low an x forbids more
-)
+_HIGHER = 0.001  # a guess on new knots over the answer on the old ones: a tangent at too low an x forbids more
 
 
-def smooth_braking(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float) -> TimeLaw:
+def smooth_braking(
+    robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float, margin: float
+) -> TimeLaw:
     """The time of the motion as a law of the time since `start`.
 
     Args:
         robot, timed, start, limits, payload: as for `emergency_stop`, with a limit of the jerk.
+        margin: share of the limits to keep in hand once the pace is well below 1.
 
     Raises:
         LimitsExceeded: the motion breaks a limit after `start`.
@@ -57,14 +57,14 @@ def smooth_braking(robot: Mechanism, timed: TimedMotion, start: float, limits: L
     _require_kept(robot, timed, start, limits, payload)
     asked = {**limits.as_dict(), "payload": payload, "start": start}
     coarse = np.linspace(start, timed.duration, COARSE + 1)
-    before = _least(robot, timed, Pace(coarse, np.ones_like(coarse), np.zeros_like(coarse)), limits, payload)
+    before = _least(robot, timed, Pace(coarse, np.ones_like(coarse), np.zeros_like(coarse)), limits, payload, margin)
     for _ in range(_ROUNDS):
         law = None if before is None else _law(before)
         if before is None or law is None:
             break
         knots, last = _knots(timed, start, law.position[-1])
         guess = np.minimum(np.interp(knots, before.tau, before.x) + _HIGHER, 1.0)
-        pace = _least(robot, timed, Pace(knots, guess, np.interp(knots, before.tau, before.b)), limits, payload)
+        pace = _least(robot, timed, Pace(knots, guess, np.interp(knots, before.tau, before.b)), limits, payload, margin)
         found = None if pace is None else _law(pace)
         way = law.position[-1] - start
         rest = math.inf if found is None else found.position[-1]
@@ -74,12 +74,14 @@ def smooth_braking(robot: Mechanism, timed: TimedMotion, start: float, limits: L
     raise TimingFailed("emergency stop", asked, "no pace to rest" if before is None else "no pace that settles")
 
 
-def _least(robot: Mechanism, timed: TimedMotion, near: Pace, limits: Limits, payload: float) -> Pace | None:
+def _least(
+    robot: Mechanism, timed: TimedMotion, near: Pace, limits: Limits, payload: float, margin: float
+) -> Pace | None:
     """The pace on the knots of a guess."""
     tau = near.tau
     instants = one_sided(tau, tau[:-1, None] + np.diff(tau)[:, None] * INSTANTS)
     rows = braking_rows(robot, motion_of(robot, timed.at(instants), payload), limits, payload)
-    return least_pace(*rows, near, _MARGIN)
+    return least_pace(*rows, near, margin)
 
 
 def _require_kept(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float) -> None:

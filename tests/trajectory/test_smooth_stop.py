@@ -157,5 +157,5 @@ def test_a_motion_whose_acceleration_steps_is_not_stopped_within_a_jerk_limit(ro
 
 
 def test_a_motion_over_its_jerk_limit_is_said_to_be(robot: Heli4, motion: TimedMotion) -> None:
-    with pytest.raises(LimitsExceeded, match="joint jerk of the motion to be stopped at 1.1"):
+    with pytest.raises(LimitsExceeded, match=r"joint jerk of the motion to be stopped at 1\.1"):
         emergency_stop(robot, motion, 0.01 * motion.duration, replace(LIMITS, jerk=0.9 * LIMITS.jerk), 1.0)
