@@ -59,7 +59,7 @@ class EmergencyStop:
 def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float) -> EmergencyStop:
     """A stop on the motion's own way, within every limit but the RMS torque's, which is of whole ways.
 
-    Without a limit of the jerk it is the shortest one; with one, it makes the mean square of the pace over the way small.
+    Without a limit of the jerk it is the shortest one; with one, the mean square of its pace over the way is small.
 
     Args:
         robot: any mechanism with the motion's kind of pose.

@@ -2,13 +2,13 @@
 
 The motion p(tau) is travelled at a pace tau(t) that never rises, from 1 to 0 with zero tau'' at both ends, tau'''
 constant in each interval. What it makes small is the mean of x = tau'^2 over the way: the energy of motion, wherever
-something is met. Without limits of the jerk that is the pace of `braking`, which has the least x
-everywhere.
+something is met. Without limits of the jerk the pace of `braking` has the least, as it has the least x everywhere.
 
 The limits are linear in x and tau'' once their tangents stand (`smooth_braking_rows`): a linear programme finds the
 pace, new tangents at its answer the next one, until x falls no more (`smooth_pace`). The motion itself keeps the rows
 of the first programme, so there is an answer from any instant of any motion within its limits. The knots then stand
-where that pace needs them, closer together towards where it rests, and all is done again until that place stays. The answer is a local one, on its knots.
+where that pace needs them, closer together towards where it rests, and all is done again until that place
+stays. The answer is a local one, on its knots.
 """
 
 from __future__ import annotations
