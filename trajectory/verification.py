@@ -18,7 +18,7 @@ import numpy as np
 from kinematics import Mechanism
 from kinematics.drives import from_actuators
 from trajectory.limits import Limits
-from trajectory.motion import Motion, motion_of
+from trajectory.motion import Motion, PoseMotion, motion_of
 from trajectory.path import Array
 from trajectory.proof import proved_use
 from trajectory.timed import TimedMotion
@@ -126,28 +126,33 @@ class Verification:
         return [row(p) for p in self.peaks]
 
 
-def verify(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float) -> Verification:
+def verify(
+    robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float, before: PoseMotion | None = None
+) -> Verification:
     """Measure a timed motion against its limits, and prove what the samples show.
 
     Args:
         robot: any mechanism with the motion's kind of pose.
-        timed: the motion, from rest to rest.
+        timed: the motion, to rest.
         limits: of joints and tool. Where the acceleration jumps, a jerk limit fails with an infinite peak.
         payload: mass at the tool [kg].
+        before: (n,) what it takes over at its start; rest at the start that was asked for, where none is given.
 
     Raises:
         InvalidShape: another kind of pose.
     """
     times, tool = timed.within(sampling(timed))
     motion = motion_of(robot, tool, payload)
-    peaks, notes = _peaks(robot, times, motion, limits)
+    if before is None:
+        before = PoseMotion(timed.ends[0], *np.zeros((3, timed.ends.shape[1])))
+    peaks, notes = _peaks(robot, times, motion, motion_of(robot, before, payload), limits)
     peak = np.abs(motion.torque).max(axis=(0, 1))
     rms = np.sqrt(integrals(times, motion.torque**2).sum(axis=0) / timed.duration)
     found = Verification(
         law=timed.name,
         duration=timed.duration,
         peaks=(*peaks, _rms_peak(robot, rms, limits.of_joints("rms_torque", rms.size))),
-        residuals=_residuals(robot, timed, motion) | _integral_residuals(times, motion),
+        residuals=_residuals(robot, timed, motion, before) | _integral_residuals(times, motion),
         reach=_least(robot.margin("reach", motion.tool.pose)),
         rms_torque=rms,
         rms_over_peak=np.divide(rms, peak, out=np.zeros_like(rms), where=rms != 0.0),
@@ -164,9 +169,11 @@ def sampling(timed: TimedMotion) -> Array:
     return np.linspace(0.0, 1.0, parts + 1)
 
 
-def _peaks(robot: Mechanism, times: Array, motion: Motion, limits: Limits) -> tuple[tuple[Peak, ...], tuple[str, ...]]:
+def _peaks(
+    robot: Mechanism, times: Array, motion: Motion, before: Motion, limits: Limits
+) -> tuple[tuple[Peak, ...], tuple[str, ...]]:
     found = uses(robot, motion, limits)
-    jump_time, jump = _jump(times, motion.joints.second)
+    jump_time, jump = _jump(times, motion.joints.second, before.joints.second)
     if jump <= _SMOOTH * np.abs(motion.joints.second).max():
         return tuple(_peak(robot, times, name, use) for name, use in found.items()), ()
     jerk = found.pop("joint jerk").limit
@@ -193,25 +200,25 @@ def _rms_peak(robot: Mechanism, rms: Array, limit: Array | None) -> Peak:
     return Peak("rms torque", robot.actuator_names[joint], None, float(rms[joint]), bound, ratio)
 
 
-def _jump(times: Array, acceleration: Array) -> tuple[float, float]:
-    """Time and size of the joints' largest jump of acceleration at a knot, from and to rest at the ends too."""
-    rest = np.zeros_like(acceleration[:1, 0])
-    after, before = np.concatenate([acceleration[:, 0], rest]), np.concatenate([rest, acceleration[:, -1]])
+def _jump(times: Array, acceleration: Array, first: Array) -> tuple[float, float]:
+    """Time and size of the joints' largest jump of acceleration at a knot: from `first` at the start, to rest at T."""
+    after = np.concatenate([acceleration[:, 0], np.zeros_like(first)[None]])
+    before = np.concatenate([first[None], acceleration[:, -1]])
     jumps = np.abs(after - before).max(axis=-1)
     return float(np.append(times[:, 0], times[-1, -1])[jumps.argmax()]), float(jumps.max())
 
 
-def _residuals(robot: Mechanism, timed: TimedMotion, motion: Motion) -> dict[str, float]:
+def _residuals(robot: Mechanism, timed: TimedMotion, motion: Motion, before: PoseMotion) -> dict[str, float]:
     pose, joints = motion.tool.pose, from_actuators(robot, motion.joints.position)
     knots, knot_joints = pose[:, 0], joints[:, 0]
     by_forward = robot.forward(knot_joints) - knots
     turns = list(robot.rotations)
     by_forward[..., turns] = np.remainder(by_forward[..., turns] + math.pi, 2 * math.pi) - math.pi
-    start, end = timed.ends
+    first = timed.at(np.array(0.0))
     return {
-        "start pose": _largest(pose[0, 0] - start),
-        "end pose": _largest(pose[-1, -1] - end),
-        "start speed": _largest(motion.tool.velocity[0, 0]),
+        "start pose": _largest(first.pose - before.pose),
+        "end pose": _largest(pose[-1, -1] - timed.ends[1]),
+        "start speed": _largest(first.velocity - before.velocity),
         "end speed": _largest(motion.tool.velocity[-1, -1]),
         "kink of the path": timed.kink,
         "closure": _largest(robot.closure_residual(pose, joints)),

