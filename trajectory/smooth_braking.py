@@ -146,4 +146,5 @@ def _to_rest(tau: Array, second: Array, times: Array, speeds: Array, to_go: floa
 
 
 def _joined(times: Array, tau: Array, speeds: Array, second: Array) -> TimeLaw:
-    return TimeLaw("emergency stop", times, tau, speeds, second[:-1], np.diff(second) / np.diff(times))
+    jerk = np.diff(second) / np.diff(times)
+    return TimeLaw("emergency stop", times, tau, speeds, second[:-1], jerk, np.zeros_like(jerk))

@@ -35,7 +35,8 @@ def s_law(speed: float, jerk: float, cruise: float) -> TimeLaw:
     acceleration = jerk * h * np.array([0.0, 1.0, 0.0, 0.0, -1.0])
     speeds = speed * np.array([0.0, 0.5, 1.0, 1.0, 0.5, 0.0])
     ways = speeds[:-1] * steps + acceleration * steps**2 / 2 + jerks * steps**3 / 6
-    return TimeLaw("S", np.append(0.0, steps.cumsum()), np.append(0.0, ways.cumsum()), speeds, acceleration, jerks)
+    times, position = np.append(0.0, steps.cumsum()), np.append(0.0, ways.cumsum())
+    return TimeLaw("S", times, position, speeds, acceleration, jerks, np.zeros(5))
 
 
 @pytest.fixture(scope="module")

@@ -33,7 +33,8 @@ def ruckig(case: Case) -> TimedPath:
     times = np.concatenate([[0.0], np.cumsum(steps[kept])])
     at = np.append(np.flatnonzero(kept), len(steps))
     speed = np.maximum(speed[at], 0.0)
-    return TimedPath(case.path, TimeLaw("ruckig", times, position[at], speed, acceleration[at[:-1]], jerk[at[:-1]]))
+    acceleration, jerk = acceleration[at[:-1]], jerk[at[:-1]]
+    return TimedPath(case.path, TimeLaw("ruckig", times, position[at], speed, acceleration, jerk, np.zeros_like(jerk)))
 
 
 def _triples(case: Case) -> tuple[Array, Array, Array]:

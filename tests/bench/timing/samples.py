@@ -64,4 +64,5 @@ def smooth_law(case: Case, name: str, times: Array, acceleration: Array) -> Time
         )
     position, speed, acceleration, jerk = (scale * v for v in (position, speed, acceleration, jerk))
     position[-1], speed[-1] = length, 0.0
-    return TimedPath(case.path, TimeLaw(name, times, position, speed, acceleration[:-1], jerk))
+    law = TimeLaw(name, times, position, speed, acceleration[:-1], jerk, np.zeros_like(jerk))
+    return TimedPath(case.path, law)
