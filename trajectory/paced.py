@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trajectory.knots import interval_of
 from trajectory.motion import PoseMotion, largest_rates, steepest_travelled, travelled
 from trajectory.path import Array
 from trajectory.timed import TimedMotion
@@ -77,7 +78,7 @@ class PacedMotion:
         along, half = self.pace.at(0.5 * low + 0.5 * high), (high - low) * (0.5 + _INSIDE)
         speed, *_ = rates = largest_rates(along, half)
         away, knots = half * speed, self.motion.times
-        interval = np.clip(np.searchsorted(knots, along.position, side="right") - 1, 0, knots.size - 2)
+        interval = interval_of(knots, along.position)
         first, last = (np.clip(along.position + d, knots[interval], knots[interval + 1]) for d in (-away, away))
         _, _, second, third = self.motion.at(along.position)
         return steepest_travelled(second, third, self.motion.steepest_jerk(first, last), away, rates)

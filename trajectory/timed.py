@@ -8,6 +8,7 @@ from typing import Protocol, Self
 import numpy as np
 
 from kinematics import InvalidValue
+from trajectory.knots import interval_of
 from trajectory.motion import PoseMotion, largest_rates, pose_motion, steepest_travelled
 from trajectory.path import Array, Path
 from trajectory.timing import TimeLaw
@@ -149,8 +150,7 @@ class TimedPath:
         """Of all pieces of the path between two arc lengths (k,)."""
         knots = np.array(self.path.knots)
         on_pieces = self.path.steepest_third((knots[1:] + knots[:-1]) / 2)
-        first = np.clip(np.searchsorted(knots, low, side="left") - 1, 0, knots.size - 2)
-        last = np.clip(np.searchsorted(knots, high, side="right") - 1, 0, knots.size - 2)
+        first, last = interval_of(knots, low, "left"), interval_of(knots, high)
         found = on_pieces[first]
         for k in range(1, int((last - first).max()) + 1):
             found = np.maximum(found, on_pieces[np.minimum(first + k, last)])
