@@ -168,5 +168,6 @@ def test_all_four_packages_belong_to_this_distribution() -> None:
     assert distribution("linkwright").version
     roots = {Path(package.__file__).parents[1] for package in (kinematics, design, trajectory, studies)}
     assert len(roots) == 1
+    owners = packages_distributions()
     for name in ("kinematics", "design", "trajectory", "studies"):
-        assert set(packages_distributions()[name]) == {"linkwright"}
+        assert set(owners[name]) == {"linkwright"}
