@@ -35,11 +35,11 @@ class Statement:
     length: float
 
     def __post_init__(self) -> None:
-        if not np.isfinite(self.at_least):
-            raise InvalidValue("at_least", self.at_least, "a finite number")
         if self.margin not in self.robot.margins:
             known = ", ".join(self.robot.margins)
             raise InvalidValue(f"{type(self.robot).__name__} margin", self.margin, f"one of {known}")
+        if not np.isfinite(self.at_least):
+            raise InvalidValue(f"at_least of {self.margin}", self.at_least, "a finite number, in the margin's unit")
         if not (np.isfinite(self.length) and self.length > 0.0):
             raise InvalidValue("characteristic_length", self.length, "a finite length > 0 m")
 
