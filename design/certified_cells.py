@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 
-from design.certificate import answer_by_boxes
+from design.certificate import Certificate, answer_by_boxes
 from design.certified import CertifiedRegion
 from design.errors import InvalidSection
 from design.index import index_of
@@ -21,6 +21,7 @@ from design.statement import Statement
 from kinematics import FviBounds, Mechanism
 from kinematics.errors import InvalidValue
 
+Array = np.ndarray
 DEPTH = 7  # at most 2^7 cells along each axis
 MOST_BOXES_A_CELL = 100_000
 
@@ -62,8 +63,14 @@ def certified_cells(
     statement = Statement.of(robot, margin, at_least, bounds, characteristic_length)
     index = index_of(robot, margin, statement.bounds, statement.length)
     chart = map_of(index, Section(region, axes), robot.pose_names, (nodes, nodes))
-    lower, holds = LowerBounds(statement, region), chart.goodness >= at_least  # NaN is not
-    cells, proved, left, boxes = [(0, 0, nodes - 1)], [], [np.empty((0, 2, len(robot.pose_names)))], 0
+    proved, boxes, left = _proofs(LowerBounds(statement, region), chart, nodes - 1, most_boxes)
+    return CertifiedRegion(margin, at_least, tuple(proved), boxes, left, time.perf_counter() - started)
+
+
+def _proofs(lower: LowerBounds, chart: Map, size: int, most_boxes: int) -> tuple[list[Certificate], int, Array]:
+    """The proved cells of a chart of `size` by `size`, the boxes bounded, and those left of smallest cells."""
+    holds = chart.goodness >= lower.statement.at_least  # NaN is not
+    cells, proved, left, boxes = [(0, 0, size)], [], [np.empty((0, 2, chart.poses.shape[-1]))], 0
     while cells:
         column, row, size = cells.pop()
         if holds[row : row + size + 1, column : column + size + 1].all():
@@ -77,7 +84,7 @@ def certified_cells(
         if size > 1:
             half = size // 2
             cells += [(column + i * half, row + j * half, half) for i in (0, 1) for j in (0, 1)]
-    return CertifiedRegion(margin, at_least, tuple(proved), boxes, np.concatenate(left), time.perf_counter() - started)
+    return proved, boxes, np.concatenate(left)
 
 
 def _cell(chart: Map, column: int, row: int, size: int) -> Box:
