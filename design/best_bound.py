@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from design.certificate import MOST_BOXES, SEED, Certificate, Progress, certify, suspects
+from design.certificate import MOST_BOXES, SEED, Certificate, Progress, answer, suspects
 from design.region import Region
+from design.statement import Statement
 from kinematics import FviBounds, Mechanism
 from kinematics.errors import InvalidValue
 
@@ -54,31 +55,19 @@ def best_bound(
     """
     if not (np.isfinite(tolerance) and tolerance > 0.0):
         raise InvalidValue("tolerance", tolerance, "a finite number > 0")
-    fvi_bounds = bounds or robot.fvi_bounds
-    length = robot.characteristic_length if characteristic_length is None else float(characteristic_length)
+    statement = Statement.of(robot, margin, 0.0, bounds, characteristic_length)  # the bound is what is sought
     region.check(robot.pose_names)
-
-    def value(pose: np.ndarray) -> float:
-        return float(robot.margin(margin, pose, fvi_bounds, length))
-
-    sampled = value(suspects(robot, region, margin, fvi_bounds, length, 10 * SEED)[0])
+    share = max(1, most_boxes // _SHARES)
+    sampled = float(statement.value(suspects(statement, region, 10 * SEED)[0]))
     best: Certificate | None = None
     undecided, proved, doublings = -1, _coarsest(sampled, tolerance) + 1, 0
     for _ in range(_MOST_TRIES):
         if not np.isfinite(sampled) or undecided + 1 >= proved:
             break
-        certificate = certify(
-            robot,
-            region,
-            margin,
-            at_least=sampled - math.ldexp(tolerance, doublings),
-            bounds=fvi_bounds,
-            characteristic_length=length,
-            most_boxes=max(1, most_boxes // _SHARES),
-            progress=progress,
-        )
+        attempt = replace(statement, at_least=sampled - math.ldexp(tolerance, doublings))
+        certificate = answer(attempt, region, share, progress)
         if certificate.counterexample is not None:
-            sampled = value(certificate.counterexample)
+            sampled = float(statement.value(certificate.counterexample))
             continue
         if certificate.status == "proved":
             best, proved = certificate, doublings

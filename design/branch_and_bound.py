@@ -38,21 +38,16 @@ class Search:
 
 
 def search(
-    bounds: LowerBounds,
-    region: Region,
-    mirrors: Mirrors,
-    names: tuple[str, ...],
-    failing: Callable[[Array], Array | None],
-    most_boxes: int,
-    progress: Callable[[str], None],
+    bounds: LowerBounds, region: Region, mirrors: Mirrors, most_boxes: int, progress: Callable[[str], None]
 ) -> Search:
     """Bound boxes, cut those that stay open along the coordinate that spreads their claims the most.
 
     Args:
+        bounds: of the statement, over a region that holds this one.
         mirrors: those that allow to look at one side only.
-        failing: (k, n) midpoints of open boxes -> one of them where the requirement fails, else None.
         progress: told how far it is after each batch.
     """
+    names = bounds.statement.robot.pose_names
     low, high = one_side(*root(region, names), mirrors, names)
     extent = np.where(high[0] > low[0], high[0] - low[0], 1.0)
     tree = Tree()
@@ -72,7 +67,7 @@ def search(
         nodes, low, high, spread = nodes[~proved], low[~proved], high[~proved], spread[~proved]
         if not len(nodes):
             continue
-        counterexample = failing(0.5 * low + 0.5 * high)
+        counterexample = bounds.statement.refutation(region, 0.5 * low + 0.5 * high)
         tiny = ((high - low) / extent <= SMALLEST).all(axis=1)
         small += list(np.stack([low[tiny], high[tiny]], axis=1))
         nodes, low, high, spread = nodes[~tiny], low[~tiny], high[~tiny], spread[~tiny]

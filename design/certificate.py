@@ -22,6 +22,7 @@ from design.branch_and_bound import Search, search
 from design.lower_bounds import LowerBounds
 from design.region import Region
 from design.search import worst_poses
+from design.statement import Statement
 from design.symmetry import Mirrors, mirrors_of
 from kinematics import FviBounds, Mechanism
 from kinematics.errors import InvalidValue
@@ -31,7 +32,6 @@ Progress = Callable[[str], None]
 MOST_BOXES = 4_000_000
 SEED = 20_000  # poses of the grid that looks for a counterexample first
 _MOST_PER_COORDINATE = 200
-_ROUNDING = 1e-12  # by how much plain arithmetic must miss the bound before it refutes, relative to 1 or the bound
 
 
 @dataclass(frozen=True)
@@ -68,6 +68,10 @@ class Certificate:
     left: Array
     mirrors: Mirrors
 
+    def statement(self, robot: Mechanism) -> Statement:
+        """What it says, of a robot that is still to be shown to be the one it was made for."""
+        return Statement(robot, self.margin, self.at_least, self.bounds, self.characteristic_length)
+
     def __str__(self) -> str:
         return f"{self.mechanism}: {self.margin} >= {self.at_least:g} {self.status} with {self.boxes} boxes"
 
@@ -96,38 +100,54 @@ def certify(
 
     Raises:
         InvalidRegion: the region does not speak of the robot's coordinates.
-        InvalidValue: an unknown margin, a bound that is not finite, or no box allowed.
+        InvalidValue: see `Statement`; or no box allowed.
     """
-    _check(robot, region, margin, at_least, most_boxes)
-    fvi_bounds = bounds or robot.fvi_bounds
-    length = robot.characteristic_length if characteristic_length is None else float(characteristic_length)
-    at_least = float(at_least)
-    mirrors = mirrors_of(robot, region, margin)
-    found = _decide(robot, region, mirrors, margin, at_least, fvi_bounds, length, most_boxes, progress)
-    return answer(robot, region, mirrors, margin, at_least, fvi_bounds, length, found)
+    statement = Statement.of(robot, margin, at_least, bounds, characteristic_length)
+    region.check(robot.pose_names)
+    if most_boxes < 1:
+        raise InvalidValue("most_boxes", most_boxes, "at least 1")
+    return answer(statement, region, most_boxes, progress)
 
 
-def answer(
-    robot: Mechanism,
-    region: Region,
-    mirrors: Mirrors,
-    margin: str,
-    at_least: float,
-    bounds: FviBounds,
-    length: float,
-    found: Search,
-) -> Certificate:
-    """What a search over a region came to, with all that it was asked."""
+def answer(statement: Statement, region: Region, most_boxes: int, progress: Progress) -> Certificate:
+    """Look for a counterexample where the margin is lowest, then prove by boxes."""
+    what = f"certify {statement.margin} >= {statement.at_least:g}"
+    progress(f"{what}: looking for a counterexample")
+    counterexample = statement.refutation(region, suspects(statement, region, SEED))
+    if counterexample is not None:
+        no_boxes = np.empty(0, dtype=np.int8), 0, np.empty((0, 2, len(counterexample)))
+        mirrors = mirrors_of(statement.robot, region, statement.margin)
+        return _certificate(statement, region, mirrors, Search(*no_boxes, counterexample))
+    lower = LowerBounds(statement, region)
+    return answer_by_boxes(lower, region, most_boxes, lambda done: progress(f"{what}: {done}"))
+
+
+def answer_by_boxes(lower: LowerBounds, region: Region, most_boxes: int, progress: Progress) -> Certificate:
+    """Prove by boxes; the region may be a part of the one that the lower bounds were made for."""
+    mirrors = mirrors_of(lower.statement.robot, region, lower.statement.margin)
+    return _certificate(lower.statement, region, mirrors, search(lower, region, mirrors, most_boxes, progress))
+
+
+def suspects(statement: Statement, region: Region, about: int) -> Array:
+    """(k, n) poses where the margin is lowest as far as a grid and descents tell, the lowest first."""
+    robot, bounds, length = statement.robot, statement.bounds, statement.length
+    if region.dimension == 0:
+        return region.from_unit(np.empty((1, 0)), robot.pose_names)
+    about = min(about, _MOST_PER_COORDINATE**region.dimension)
+    return worst_poses(robot, region, statement.margin, bounds=bounds, characteristic_length=length, about=about).poses
+
+
+def _certificate(statement: Statement, region: Region, mirrors: Mirrors, found: Search) -> Certificate:
     refuted, proved = found.counterexample is not None, not len(found.left)
     return Certificate(
-        mechanism=type(robot).__name__,
-        digest=robot.geometry.digest,
-        ranges=robot.ranges.digest,
+        mechanism=type(statement.robot).__name__,
+        digest=statement.robot.geometry.digest,
+        ranges=statement.robot.ranges.digest,
         region=region,
-        margin=margin,
-        at_least=at_least,
-        bounds=bounds,
-        characteristic_length=length,
+        margin=statement.margin,
+        at_least=statement.at_least,
+        bounds=statement.bounds,
+        characteristic_length=statement.length,
         version=version("linkwright"),
         status="refuted" if refuted else "proved" if proved else "undecided",
         counterexample=found.counterexample,
@@ -136,59 +156,3 @@ def answer(
         left=found.left,
         mirrors=mirrors,
     )
-
-
-def _check(robot: Mechanism, region: Region, margin: str, at_least: float, most_boxes: int) -> None:
-    region.check(robot.pose_names)
-    if not np.isfinite(at_least):
-        raise InvalidValue("at_least", at_least, "a finite number")
-    if most_boxes < 1:
-        raise InvalidValue("most_boxes", most_boxes, "at least 1")
-    if margin not in robot.margins:
-        raise InvalidValue(f"{type(robot).__name__} margin", margin, f"one of {', '.join(robot.margins)}")
-
-
-def _decide(
-    robot: Mechanism,
-    region: Region,
-    mirrors: Mirrors,
-    margin: str,
-    at_least: float,
-    bounds: FviBounds,
-    length: float,
-    most_boxes: int,
-    progress: Progress,
-) -> Search:
-    """Look for a counterexample where the margin is lowest, then prove by boxes."""
-    names = robot.pose_names
-
-    def failing(poses: Array) -> Array | None:
-        inside = poses[region.contains(poses, names)]
-        return first_failing(robot, margin, inside, at_least, bounds, length)
-
-    what = f"certify {margin} >= {at_least:g}"
-    progress(f"{what}: looking for a counterexample")
-    counterexample = failing(suspects(robot, region, margin, bounds, length, SEED))
-    if counterexample is not None:
-        return Search(np.empty(0, dtype=np.int8), 0, np.empty((0, 2, len(names))), counterexample)
-    lower = LowerBounds(robot, region, margin, at_least, bounds, length)
-    return search(lower, region, mirrors, names, failing, most_boxes, lambda done: progress(f"{what}: {done}"))
-
-
-def suspects(robot: Mechanism, region: Region, margin: str, bounds: FviBounds, length: float, about: int) -> Array:
-    """(k, n) poses where the margin is lowest as far as a grid and descents tell, the lowest first."""
-    if region.dimension == 0:
-        return region.from_unit(np.empty((1, 0)), robot.pose_names)
-    about = min(about, _MOST_PER_COORDINATE**region.dimension)
-    return worst_poses(robot, region, margin, bounds=bounds, characteristic_length=length, about=about).poses
-
-
-def first_failing(
-    robot: Mechanism, margin: str, poses: Array, at_least: float, bounds: FviBounds, length: float
-) -> Array | None:
-    """A pose (n,) of (k, n) where the margin, in plain arithmetic, is below the bound or has no value; else None."""
-    if not len(poses):
-        return None
-    values = robot.margin(margin, poses, bounds, length)
-    below = ~(values >= at_least - _ROUNDING * max(1.0, abs(at_least)))
-    return poses[int(np.where(below, np.nan_to_num(values, nan=-np.inf), np.inf).argmin())] if below.any() else None

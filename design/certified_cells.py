@@ -9,8 +9,7 @@ import time
 
 import numpy as np
 
-from design.branch_and_bound import search
-from design.certificate import Certificate, answer, first_failing
+from design.certificate import Certificate, answer_by_boxes
 from design.certified import CertifiedRegion
 from design.errors import InvalidSection
 from design.index import index_of
@@ -18,7 +17,7 @@ from design.lower_bounds import LowerBounds
 from design.maps import Map, map_of
 from design.region import Box, Region
 from design.section import Section
-from design.symmetry import mirrors_of
+from design.statement import Statement
 from kinematics import FviBounds, Mechanism
 from kinematics.errors import InvalidValue
 
@@ -56,28 +55,26 @@ def certified_cells(
         InvalidRegion, InvalidValue: see `certify`.
         InvalidSection: see `Section.check`, or the region is not a box.
     """
-    _check(robot, region, margin, at_least, depth)
+    if not isinstance(region, Box):
+        raise InvalidSection("cells", repr(region), "a Box; a Cylinder has `certified_cylinder`")
+    if not 0 <= depth <= 10:
+        raise InvalidValue("depth", depth, "a whole number from 0 to 10")
     started, nodes = time.perf_counter(), 2**depth + 1
-    fvi_bounds = bounds or robot.fvi_bounds
-    length = robot.characteristic_length if characteristic_length is None else float(characteristic_length)
-    index = index_of(robot, margin, fvi_bounds, length)
+    statement = Statement.of(robot, margin, at_least, bounds, characteristic_length)
+    index = index_of(robot, margin, statement.bounds, statement.length)
     chart = map_of(index, Section(region, axes), robot.pose_names, (nodes, nodes))
-    lower = LowerBounds(robot, region, margin, at_least, fvi_bounds, length)
+    proved, boxes, left = _proofs(LowerBounds(statement, region), chart, nodes - 1, most_boxes)
+    return CertifiedRegion(margin, at_least, tuple(proved), boxes, left, time.perf_counter() - started)
 
-    def failing(poses: Array) -> Array | None:
-        return first_failing(robot, margin, poses, at_least, fvi_bounds, length)
 
-    def attempt(cell: Box) -> Certificate:
-        mirrors = mirrors_of(robot, cell, margin)
-        found = search(lower, cell, mirrors, robot.pose_names, failing, most_boxes, lambda _: None)
-        return answer(robot, cell, mirrors, margin, at_least, fvi_bounds, length, found)
-
-    holds = chart.goodness >= at_least  # NaN is not
-    cells, proved, left, boxes = [(0, 0, nodes - 1)], [], [np.empty((0, 2, len(robot.pose_names)))], 0
+def _proofs(lower: LowerBounds, chart: Map, size: int, most_boxes: int) -> tuple[list[Certificate], int, Array]:
+    """The proved cells of a chart of `size` by `size`, the boxes bounded, and those left of smallest cells."""
+    holds = chart.goodness >= lower.statement.at_least  # NaN is not
+    cells, proved, left, boxes = [(0, 0, size)], [], [np.empty((0, 2, chart.poses.shape[-1]))], 0
     while cells:
         column, row, size = cells.pop()
         if holds[row : row + size + 1, column : column + size + 1].all():
-            found = attempt(_cell(region, axes, chart, column, row, size))
+            found = answer_by_boxes(lower, _cell(chart, column, row, size), most_boxes, lambda _: None)
             boxes += found.boxes
             if found.status == "proved":
                 proved.append(found)
@@ -87,22 +84,11 @@ def certified_cells(
         if size > 1:
             half = size // 2
             cells += [(column + i * half, row + j * half, half) for i in (0, 1) for j in (0, 1)]
-    return CertifiedRegion(margin, at_least, tuple(proved), boxes, np.concatenate(left), time.perf_counter() - started)
+    return proved, boxes, np.concatenate(left)
 
 
-def _check(robot: Mechanism, region: Region, margin: str, at_least: float, depth: int) -> None:
-    if not isinstance(region, Box):
-        raise InvalidSection("cells", repr(region), "a Box; a Cylinder has `certified_cylinder`")
-    if not 0 <= depth <= 10:
-        raise InvalidValue("depth", depth, "a whole number from 0 to 10")
-    if not np.isfinite(at_least):
-        raise InvalidValue("at_least", at_least, "a finite number")
-    if margin not in robot.margins:
-        raise InvalidValue(f"{type(robot).__name__} margin", margin, f"one of {', '.join(robot.margins)}")
-
-
-def _cell(region: Region, axes: tuple[str, str], chart: Map, column: int, row: int, size: int) -> Box:
-    """The region between two nodes of the chart along each of both axes."""
+def _cell(chart: Map, column: int, row: int, size: int) -> Box:
+    """The map's region between two of its nodes along each of both axes."""
     sides = chart.first[[column, column + size]], chart.second[[row, row + size]]
-    cut = {name: (float(a), float(b)) for name, (a, b) in zip(axes, sides, strict=True)}
-    return Box(**{**region.intervals, **cut})
+    cut = {name: (float(a), float(b)) for name, (a, b) in zip(chart.section.axes, sides, strict=True)}
+    return Box(**{**chart.section.region.intervals, **cut})

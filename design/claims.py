@@ -20,8 +20,8 @@ is rewritten. The lemmas:
   ends p of one and q of the other, as then all of their points are so far apart along w. The shortest line between the
   segments in the middle of the box serves as w.
 
-That the scales are positive is claimed with the rest; the FVI's own numbers must be. S is an input of its own: any
-numbers are right, good ones only make the bounds tight. So are the w.
+That the scales are positive is claimed with the rest; the FVI's own numbers and the length must be. S is an input of
+its own: any numbers are right, good ones only make the bounds tight. So are the w.
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ import casadi as ca
 import numpy as np
 
 from design.scaling import near_inverse
+from design.statement import Statement
 from kinematics import FviBounds, Mechanism
 from kinematics.clearance import segment_gap_symbolic
 from kinematics.indices import homogeneous, sides
@@ -66,9 +67,10 @@ class Numbers:
         return ca.vertcat(self.bound, f.joint_speed, f.joint_effort, f.speed, f.force, self.length)
 
     @staticmethod
-    def values(bound: float, fvi: FviBounds, length: float) -> list[float]:
+    def values(statement: Statement) -> list[float]:
         """What the symbols stand for."""
-        return [bound, fvi.joint_speed, fvi.joint_effort, fvi.speed, fvi.force, length]
+        fvi = statement.bounds
+        return [statement.at_least, fvi.joint_speed, fvi.joint_effort, fvi.speed, fvi.force, statement.length]
 
 
 @dataclass(frozen=True)
@@ -85,23 +87,23 @@ class Claims:
     chosen: Callable[[Array], Array] = near_inverse
 
 
-def claims_of(robot: Mechanism, margin: str, numbers: Numbers, bound: float, inside: Array) -> Claims:
-    """The claims of one margin.
+def claims_of(statement: Statement, numbers: Numbers, inside: Array) -> Claims:
+    """What is to be shown for a statement; where its bound is not above 0 the plain components serve.
 
     Args:
         numbers: symbols for the bound and what the FVI is measured with.
-        bound: the bound's value; where it is not above 0 the plain components serve.
         inside: (n,) a pose of the region, which gives the signs.
     """
+    robot, margin, positive = statement.robot, statement.margin, statement.at_least > 0.0
     exact = {"passive_joint": _passive_joint, "clearance": _clearance}.get(margin)
     if exact is not None:
         return exact(robot, numbers)
     maker = {"det_J_x": _det_j_x, "J_q": _j_q, "det_J_q": _det_j_q, "fvi": _fvi}.get(margin)
-    if maker is not None and bound > 0.0:
+    if maker is not None and positive:
         return maker(robot, numbers, inside)
     components = robot.margin_components(margin, numbers.fvi, numbers.length)
     parts = [part for i in range(components.numel()) for part in sides(components[i])]
-    if bound > 0.0:
+    if positive:
         parts = [_signed(robot, p.dep(0), inside) if p.op() == ca.OP_FABS else p for p in parts]
     return Claims(ca.vertcat(*parts) - numbers.bound, ca.SX(0, 0))
 

@@ -14,10 +14,10 @@ import numpy as np
 
 from design.claims import Numbers, claims_of
 from design.region import Region
-from kinematics import FviBounds, Mechanism
+from design.statement import Statement
+from kinematics import Mechanism
 from kinematics.block_program import BlockProgram
 from kinematics.box_program import BoxProgram
-from kinematics.errors import InvalidValue
 from kinematics.interpreter import bulk, evaluate
 from kinematics.interval import enclose
 from kinematics.program import Op, Program, replay
@@ -32,26 +32,21 @@ class LowerBounds:
     """The claims of one margin and bound over boxes of a region.
 
     Attributes:
+        statement: what the claims come from.
         free: which pose coordinates are not fixed by the region; boxes may be split along these.
     """
 
-    def __init__(
-        self, robot: Mechanism, region: Region, margin: str, at_least: float, bounds: FviBounds, length: float
-    ) -> None:
-        """Build the programs.
-
-        Raises:
-            InvalidValue: the length is not above 0, on which the lemmas rely, as on the FVI bounds, which say so.
-        """
-        if not (np.isfinite(length) and length > 0.0):
-            raise InvalidValue("characteristic_length", length, "a finite length > 0 m")
-        model, numbers = robot.model(), Numbers.symbols()
+    def __init__(self, statement: Statement, region: Region) -> None:
+        """Build the programs."""
+        robot, numbers = statement.robot, Numbers.symbols()
+        model = robot.model()
+        self.statement = statement
         intervals = [region.intervals[name] for name in robot.pose_names]
         self.free = np.array([i for i, (low, high) in enumerate(intervals) if low < high], dtype=np.int64)
         self._extent = np.array([high - low if high > low else 1.0 for low, high in intervals])
         middle = region.from_unit(np.full(region.dimension, 0.5), robot.pose_names)
-        claims = claims_of(robot, margin, numbers, at_least, middle)
-        fixed = [*robot.geometry.vector(), *Numbers.values(at_least, bounds, length)]
+        claims = claims_of(statement, numbers, middle)
+        fixed = [*robot.geometry.vector(), *Numbers.values(statement)]
         moving = ca.vertcat(*(model.pose[int(i)] for i in self.free)) if self.free.size else ca.SX(0, 1)
         gradient = ca.jacobian(claims.expressions, moving)
         symbols = [model.pose, ca.vec(claims.scaling), model.geometry, numbers.vector]

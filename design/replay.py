@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from importlib.metadata import version
 
-from design.certificate import Certificate, first_failing
+import numpy as np
+
+from design.certificate import Certificate
 from design.errors import BrokenCertificate, OtherCertificate
 from design.lower_bounds import LowerBounds
 from design.region import Region
@@ -15,6 +17,7 @@ from design.symmetry import mirrors_of, one_side
 from design.tree import LEFT, OUTSIDE, halves, leaves, outside, root
 from kinematics import FviBounds, Mechanism
 
+Array = np.ndarray
 _CUTS = 2  # a box that only just passed may need a cut where another library rounds its scaling differently
 
 
@@ -60,7 +63,7 @@ def replay(
     if certificate.status == "proved":
         return _replay_proof(certificate, robot)
     if certificate.status == "refuted" and certificate.counterexample is not None:
-        return _replay_refutation(certificate, robot)
+        return _replay_refutation(certificate, robot, certificate.counterexample)
     raise BrokenCertificate(f"its status {certificate.status!r} decides nothing")
 
 
@@ -70,20 +73,20 @@ def _same(what: str, found: object, expected: object) -> None:
 
 
 def _replay_proof(certificate: Certificate, robot: Mechanism) -> int:
-    names, claim = robot.pose_names, certificate
-    claim.region.check(names)
-    if claim.boxes != (bounded := int((claim.codes != OUTSIDE).sum())):
-        raise BrokenCertificate(f"it says {claim.boxes} boxes and lists {bounded}")
-    lower = LowerBounds(robot, claim.region, claim.margin, claim.at_least, claim.bounds, claim.characteristic_length)
+    names, region, mirrors = robot.pose_names, certificate.region, certificate.mirrors
+    region.check(names)
+    if certificate.boxes != (bounded := int((certificate.codes != OUTSIDE).sum())):
+        raise BrokenCertificate(f"it says {certificate.boxes} boxes and lists {bounded}")
+    lower = LowerBounds(certificate.statement(robot), region)
     count = 0
-    shown = mirrors_of(robot, claim.region, claim.margin)
-    if not set(claim.mirrors) <= set(shown):
-        raise BrokenCertificate(f"it relies on the mirrors {claim.mirrors}; shown to hold: {shown}")
-    for code, low, high in leaves(claim.codes, *one_side(*root(claim.region, names), claim.mirrors, names)):
+    shown = mirrors_of(robot, region, certificate.margin)
+    if not set(mirrors) <= set(shown):
+        raise BrokenCertificate(f"it relies on the mirrors {mirrors}; shown to hold: {shown}")
+    for code, low, high in leaves(certificate.codes, *one_side(*root(region, names), mirrors, names)):
         if (code == LEFT).any():
             raise BrokenCertificate("a box is left open", low[code == LEFT][0])
         off = code == OUTSIDE
-        if not outside(claim.region, low[off], high[off], names).all():
+        if not outside(region, low[off], high[off], names).all():
             raise BrokenCertificate("a box that it calls outside is not", low[off][0])
         low, high = low[~off], high[~off]
         for cuts in range(_CUTS + 1):
@@ -99,14 +102,7 @@ def _replay_proof(certificate: Certificate, robot: Mechanism) -> int:
     return count
 
 
-def _replay_refutation(certificate: Certificate, robot: Mechanism) -> int:
-    claim, pose = certificate, certificate.counterexample
-    assert pose is not None
-    found = None
-    if claim.region.contains(pose[None], robot.pose_names)[0]:
-        found = first_failing(
-            robot, claim.margin, pose[None], claim.at_least, claim.bounds, claim.characteristic_length
-        )
-    if found is None:
+def _replay_refutation(certificate: Certificate, robot: Mechanism, pose: Array) -> int:
+    if certificate.statement(robot).refutation(certificate.region, pose[None]) is None:
         raise BrokenCertificate("its pose does not refute the claim", pose)
     return 1

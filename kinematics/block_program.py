@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinematics.block_graph import Block, Graph, Node
-from kinematics.program import Op, Program
+from kinematics.program import Columns, Op, Program
 
 _LEAVES = (int(Op.INPUT), int(Op.CONST))
 _SCALED = (Block.SUM, Block.PRODUCT, Block.PRODUCT_AFFINE, Block.PRODUCT_SUM, Block.TWO_PRODUCTS)
 
 
 @dataclass(frozen=True)
-class BlockProgram:
+class BlockProgram(Columns):
     """Instructions in order: work[target] = op(work[a], work[b], work[c], work[d]; k, c).
 
     The first rows hold the inputs' columns laid side by side. OUTPUT writes column `target` of the outputs laid side
@@ -25,14 +25,6 @@ class BlockProgram:
 
     code: np.ndarray  # (k, 6) int64: op, four rows, target
     constant: np.ndarray  # (k, 2)
-    inputs: tuple[int, ...]  # number of columns of each input
-    outputs: tuple[tuple[int, int], ...]  # (rows, columns) of each output
-    work_size: int
-
-    @property
-    def output_size(self) -> int:
-        """Columns of all outputs laid side by side."""
-        return sum(rows * columns for rows, columns in self.outputs)
 
     @classmethod
     def of(cls, program: Program) -> BlockProgram:
@@ -41,7 +33,7 @@ class BlockProgram:
         nodes = _fused(_reciprocals(graph), graph.outputs)
         order = _order(nodes, graph.outputs)
         code, constant, size = _rows(nodes, order, graph.outputs, sum(program.inputs))
-        return cls(code, constant, program.inputs, program.outputs, size)
+        return cls(program.inputs, program.outputs, size, code, constant)
 
 
 def _needed(nodes: list[Node], outputs: dict[int, int]) -> set[int]:

@@ -16,7 +16,7 @@ from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array, Build
 from kinematics.model import Model
-from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, columns, radial_directions, upright_limbs
+from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, central_limbs, columns, radial_directions
 
 _DEG = math.pi / 180.0
 
@@ -76,8 +76,7 @@ class Delta(RotaryLimbs):
     @staticmethod
     def limbs(g: SimpleNamespace) -> Limbs:
         """Arms in vertical planes through e_z."""
-        radial, _ = radial_directions(g.azimuths)
-        return upright_limbs(g.base_radius * radial, radial, g)
+        return central_limbs(g)
 
     @staticmethod
     def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:

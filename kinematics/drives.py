@@ -6,8 +6,9 @@ import casadi as ca
 
 from kinematics.interpreter import evaluate
 from kinematics.linear import adjugate
-from kinematics.mechanism import Array, Build, Mechanism, checked
+from kinematics.mechanism import Array, Build, Mechanism
 from kinematics.model import Model
+from kinematics.shapes import checked
 
 
 def to_actuators(robot: Mechanism, joints: Array) -> Array:

@@ -21,9 +21,10 @@ from kinematics.drive_train import REST
 from kinematics.errors import InvalidValue
 from kinematics.interpreter import evaluate
 from kinematics.linear import adjugate
-from kinematics.mechanism import Array, Build, Mechanism, checked
+from kinematics.mechanism import Array, Build, Mechanism
 from kinematics.model import Model
 from kinematics.motion import derivatives_along
+from kinematics.shapes import checked
 from kinematics.torque_sharing import least_peak
 
 GRAVITY = 9.80665  # m/s^2, along -e_z

@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.bodies import Bodies, Particle, Rotor
-from kinematics.geometry import TURN, GeometryRecord, angle, length, screw_pitch
+from kinematics.geometry import TURN, angle, length, screw_pitch
 from kinematics.heli4_forward import Plates, plates
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
@@ -23,8 +23,8 @@ from kinematics.mechanism import Array, Build
 from kinematics.model import Model
 from kinematics.polynomial import real_roots
 from kinematics.rods import RodLevel, outline
-from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, radial_directions, upright_limbs
-from kinematics.twins import twins_of_halves
+from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, central_limbs, radial_directions
+from kinematics.twins import HalvesGeometry
 
 _UPPER = (0.0, 0.0, 1.0, 1.0)  # which limbs hold the plate that rides on the screw: (7), (8)
 _DEG = math.pi / 180.0
@@ -32,7 +32,7 @@ _E_Z = ca.DM([0, 0, 1])
 
 
 @dataclass(frozen=True)
-class Heli4Geometry(GeometryRecord):
+class Heli4Geometry(HalvesGeometry):
     """Table 1 of the paper, in metres and radians.
 
     Raises:
@@ -48,12 +48,6 @@ class Heli4Geometry(GeometryRecord):
     pitch: float = screw_pitch(0.050, doc="p, of the screw")
     azimuths: tuple[float, ...] = angle((0.0, 180 * _DEG, 90 * _DEG, 270 * _DEG), doc="alpha, of the limbs")
     parallelogram_width: float = length(0.1, doc="d, between the two rods of a limb; not in the paper")
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if pair := twins_of_halves(np.array(self.azimuths)):
-            reason = f"limbs {pair[0]} and {pair[1]} are one, det J_x is zero in every pose"
-            raise self._invalid("azimuths", self.azimuths, f"two directions a plate, modulo 2 pi: {reason}")
 
 
 @dataclass(frozen=True)
@@ -100,9 +94,8 @@ class Heli4(RotaryLimbs, RodLevel):
     @staticmethod
     def limbs(g: SimpleNamespace) -> Limbs:
         """P_i, (2), (3), and the arms' directions, (4), (5): q from e_z outward."""
-        radial, _ = radial_directions(g.azimuths)
-        actuators = g.base_radius * radial + _heights(g.height_step * ca.DM(_UPPER))
-        return upright_limbs(actuators, radial, g)
+        limbs = central_limbs(g)
+        return limbs._replace(actuators=limbs.actuators + _heights(g.height_step * ca.DM(_UPPER)))
 
     @staticmethod
     def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:

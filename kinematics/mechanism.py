@@ -28,6 +28,7 @@ from kinematics.interpreter import bulk, evaluate
 from kinematics.linear import volume
 from kinematics.model import Model, model_of
 from kinematics.ranges import Pair, PassiveJoint, joint_travel
+from kinematics.shapes import checked, together
 
 Array = np.ndarray
 Build = tuple[list[ca.SX], list[ca.SX]]  # inputs and outputs of a program
@@ -80,7 +81,7 @@ class Mechanism(Definition):
         """(..., n), (..., m) -> (..., m) the loop closure; zero when they belong together."""
         pose, joints = self._poses(pose), self._joints(joints)
         program = self.program("closure", lambda m: ([m.pose, m.joints], [m.closure]))
-        pose, joints = self._together(pose, joints)
+        pose, joints = together(pose, joints)
         return evaluate(program, pose, joints)[0]
 
     def jacobians(self, pose: Array, joints: Array | None = None) -> tuple[Array, Array]:
@@ -89,7 +90,7 @@ class Mechanism(Definition):
             diagonal, j_x = self._evaluate("jacobians", lambda model: [model.j_q_at_pose, model.j_x_at_pose], pose)
         else:
             program = self.program("jacobians_of_joints", lambda m: ([m.pose, m.joints], [m.j_q, m.j_x]))
-            both = self._together(self._poses(pose), self._joints(joints))
+            both = together(self._poses(pose), self._joints(joints))
             diagonal, j_x = evaluate(program, *both, blank=True)
         j_q = np.zeros((*diagonal.shape, diagonal.shape[-1]))
         j_q[..., range(diagonal.shape[-1]), range(diagonal.shape[-1])] = diagonal
@@ -273,39 +274,8 @@ class Mechanism(Definition):
             raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
         return joints
 
-    @staticmethod
-    def _together(first: Array, second: Array) -> tuple[Array, Array]:
-        try:
-            lead = np.broadcast_shapes(first.shape[:-1], second.shape[:-1])
-        except ValueError:
-            found = f"leading shapes {first.shape[:-1]} and {second.shape[:-1]}"
-            raise InvalidValue("poses and joints", found, "shapes that go together") from None
-        return (
-            np.broadcast_to(first, (*lead, first.shape[-1])),
-            np.broadcast_to(second, (*lead, second.shape[-1])),
-        )
-
 
 @lru_cache(maxsize=32)
 def _programs_of(*_: object) -> dict[object, BlockProgram]:
     """The programs of all robots of one class with the same numbers, built once among them."""
     return {}
-
-
-def checked(values: Array, what: str, names: tuple[str, ...]) -> Array:
-    """The values as an array (..., len(names)).
-
-    Raises:
-        InvalidShape: the last axis does not match.
-        InvalidValue: they are not all real numbers.
-    """
-    try:
-        given = np.asarray(values)
-        if given.dtype.kind not in "biuf":
-            raise ValueError
-    except ValueError:
-        raise InvalidValue(what, f"{values!r:.80}", f"an array of real numbers (..., {len(names)})") from None
-    array = given.astype(float, copy=False)
-    if array.ndim == 0 or array.shape[-1] != len(names):
-        raise InvalidShape(what, names, array.shape)
-    return array

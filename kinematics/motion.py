@@ -9,8 +9,9 @@ import casadi as ca
 import numpy as np
 
 from kinematics.interpreter import evaluate
-from kinematics.mechanism import Array, Build, Mechanism, checked
+from kinematics.mechanism import Array, Build, Mechanism
 from kinematics.model import Model
+from kinematics.shapes import checked
 
 
 class JointMotion(NamedTuple):

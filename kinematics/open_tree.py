@@ -13,9 +13,10 @@ from kinematics.errors import InvalidValue
 from kinematics.interpreter import evaluate
 from kinematics.link_trees import link_tree
 from kinematics.links import Connection, Link, Reference, Tree, TreeJoint, universal
-from kinematics.mechanism import Array, Build, Mechanism, checked
+from kinematics.mechanism import Array, Build, Mechanism
 from kinematics.model import Model
 from kinematics.motion import derivatives_along
+from kinematics.shapes import checked
 
 
 class OpenTree(NamedTuple):

@@ -18,22 +18,22 @@ import numpy as np
 
 from kinematics.bodies import Bodies, Particle, Rotor
 from kinematics.distinct import distinct
-from kinematics.geometry import GeometryRecord, angle, length, ratio
+from kinematics.geometry import angle, length, ratio
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.linear import determinant
 from kinematics.mechanism import Array, Build, Mechanism
 from kinematics.model import Model
 from kinematics.par4_forward import Halves, candidates
-from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, columns, radial_directions, upright_limbs
-from kinematics.twins import twins_of_halves
+from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, central_limbs, columns, radial_directions
+from kinematics.twins import HalvesGeometry
 
 _DEG = math.pi / 180.0
 _HALF = (-1.0, -1.0, 1.0, 1.0)  # which end of the bars each limb holds
 
 
 @dataclass(frozen=True)
-class Par4Geometry(GeometryRecord):
+class Par4Geometry(HalvesGeometry):
     """A robot of the Quattro's size: an assumption of this project, not a datasheet.
 
     Raises:
@@ -48,12 +48,6 @@ class Par4Geometry(GeometryRecord):
     bar_length: float = length(0.100, doc="b, of the bars between the halves")
     bar_angle: float = angle(-90 * _DEG, doc="delta, azimuth of the bars from half 1 to half 2 at theta = 0")
     amplification: float = ratio(4.0, doc="k, turns of the tool a turn of the bars; 1 without a gear")
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if pair := twins_of_halves(np.array(self.azimuths)):
-            reason = f"limbs {pair[0]} and {pair[1]} are one, det J_x is zero in every pose"
-            raise self._invalid("azimuths", self.azimuths, f"two directions a half, modulo 2 pi: {reason}")
 
 
 @dataclass(frozen=True)
@@ -101,8 +95,7 @@ class Par4(RotaryLimbs):
     @staticmethod
     def limbs(g: SimpleNamespace) -> Limbs:
         """Arms in vertical planes through e_z."""
-        radial, _ = radial_directions(g.azimuths)
-        return upright_limbs(g.base_radius * radial, radial, g)
+        return central_limbs(g)
 
     @staticmethod
     def half_bar(psi: ca.SX, g: SimpleNamespace) -> ca.SX:

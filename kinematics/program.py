@@ -70,7 +70,21 @@ class UnknownOperation(LinkwrightError):
 
 
 @dataclass(frozen=True)
-class Program:
+class Columns:
+    """What a program reads and writes: columns of all inputs, and of all outputs, laid side by side."""
+
+    inputs: tuple[int, ...]  # number of columns of each input
+    outputs: tuple[tuple[int, int], ...]  # (rows, columns) of each output
+    work_size: int
+
+    @property
+    def output_size(self) -> int:
+        """Columns of all outputs laid side by side."""
+        return sum(rows * columns for rows, columns in self.outputs)
+
+
+@dataclass(frozen=True)
+class Program(Columns):
     """Instructions in order: work[target] = op(work[left], work[right]).
 
     INPUT reads column `left` of the inputs laid side by side; OUTPUT writes column `target` of the outputs laid side
@@ -82,14 +96,6 @@ class Program:
     right: np.ndarray  # (k,) int64
     target: np.ndarray  # (k,) int64
     constant: np.ndarray  # (k,)
-    inputs: tuple[int, ...]  # number of columns of each input
-    outputs: tuple[tuple[int, int], ...]  # (rows, columns) of each output
-    work_size: int
-
-    @property
-    def output_size(self) -> int:
-        """Columns of all outputs laid side by side."""
-        return sum(rows * columns for rows, columns in self.outputs)
 
     @classmethod
     def of(cls, function: ca.Function) -> Program:
@@ -121,7 +127,7 @@ class Program:
                 rows.append((op, left, right if len(source) > 1 else left, sink[0], constant))
         table = [np.array(column) for column in zip(*rows, strict=True)]
         op_, left_, right_, target_ = (column.astype(np.int64) for column in table[:4])
-        return cls(op_, left_, right_, target_, table[4].astype(float), inputs, outputs, function.sz_w())
+        return cls(inputs, outputs, function.sz_w(), op_, left_, right_, target_, table[4].astype(float))
 
 
 def _dense_places(sparsity: ca.Sparsity) -> list[int]:

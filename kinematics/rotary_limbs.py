@@ -89,6 +89,12 @@ def upright_limbs(actuators: ca.SX, radial: ca.SX, g: SimpleNamespace) -> Limbs:
     return Limbs(actuators, up, radial, g.arm_length, g.rod_length)
 
 
+def central_limbs(g: SimpleNamespace) -> Limbs:
+    """Drives on a circle about e_z, and arms in vertical planes through it."""
+    radial, _ = radial_directions(g.azimuths)
+    return upright_limbs(g.base_radius * radial, radial, g)
+
+
 def columns(point: ca.SX, count: int) -> ca.SX:
     """(3, count) the same point in every column."""
     return ca.repmat(point, 1, count)

@@ -15,6 +15,7 @@ import numpy as np
 from kinematics.bodies import Bodies, Particle
 from kinematics.gough_stewart_forward import ForwardSolution, solve_forward
 from kinematics.mechanism import Array, Mechanism
+from kinematics.shapes import together
 
 
 class SixLegs(Mechanism):
@@ -84,4 +85,4 @@ class SixLegs(Mechanism):
     def solve_forward(self, joints: Array, start: Array | None = None, iterations: int = 30) -> ForwardSolution:
         """As `forward`, and says where it converged, in how many steps and with which error."""
         begin = self._poses(self.initial_pose if start is None else start)
-        return solve_forward(self, *self._together(self._joints(joints), begin), iterations)
+        return solve_forward(self, *together(self._joints(joints), begin), iterations)

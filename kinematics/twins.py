@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+
+from kinematics.geometry import GeometryRecord
 
 Array = np.ndarray
 
@@ -21,13 +25,21 @@ def twins(limbs: Array, size: float, tolerance: float = ALIKE) -> tuple[int, int
     return (int(first[0]) + 1, int(second[0]) + 1) if len(first) else None
 
 
-def twins_of_halves(azimuths: Array) -> tuple[int, int] | None:
-    """As `twins`, for a platform of two halves on limbs 1, 2 and 3, 4 that differ in their azimuths (4,) [rad] only.
+@dataclass(frozen=True)
+class HalvesGeometry(GeometryRecord):
+    """Of a platform of two halves on limbs 1, 2 and 3, 4, which differ in their `azimuths` (4,) [rad] only.
 
     With l_1 x l_2 or l_3 x l_4 zero, so is det J_x, a component of (l_1 x l_2) x (l_3 x l_4).
+
+    Raises:
+        InvalidGeometry: besides what any geometry refuses: both limbs of a half have the same azimuth.
     """
-    directions = np.stack([np.cos(azimuths), np.sin(azimuths)], axis=-1)
-    for half in (0, 2):
-        if twins(directions[half : half + 2], 1.0):
-            return half + 1, half + 2
-    return None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        azimuths = self.as_dict()["azimuths"]
+        directions = np.stack([np.cos(azimuths), np.sin(azimuths)], axis=-1)
+        for half in (0, 2):
+            if twins(directions[half : half + 2], 1.0):
+                reason = f"limbs {half + 1} and {half + 2} are one, det J_x is zero in every pose"
+                raise self._invalid("azimuths", azimuths, f"two directions a half, modulo 2 pi: {reason}")

@@ -6,14 +6,13 @@ import os
 import signal
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import typer
 
-if TYPE_CHECKING:
-    from kinematics import Mechanism
-    from studies.pipeline import Outcome
-    from studies.schema import Study
+from studies.cli_inputs import load, outcome_of, require_writable_folders, robot_for, study_file
+from studies.cli_map import map_
+from studies.cli_options import FormatOption, JsonOption, OutOption, PrototypeOption, StudyArgument
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -22,26 +21,6 @@ app = typer.Typer(
     help="Design fast parallel robots, verify the design, and write the set-points that their drives run.",
     epilog="Exit status: 0 all holds, 1 a requirement fails, 2 the input is wrong.",
 )
-
-StudyArgument = Annotated[
-    str, typer.Argument(metavar="STUDY", help="A study's name (see `linkwright list`), or a path to a study.toml.")
-]
-OutOption = Annotated[
-    Path | None, typer.Option("--out", help="Folder for the results (default: out/ and the study's name).")
-]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object for machines, and nothing else.")]
-PrototypeOption = Annotated[
-    bool, typer.Option("--prototype", help="Use the study's own geometry, not its committed optimum.")
-]
-
-
-FormatOption = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--format",
-        help="With --out: csv, ros2, cia402, zaber, xps or pmac; once for each. [default: the study's own, or csv]",
-    ),
-]
 
 
 @app.command("list")
@@ -83,11 +62,11 @@ def run(
     from studies import console
     from studies.outputs import write_run
 
-    asked = _load(study)
+    asked = load(study)
     folder = out or Path("out") / asked.name
-    beside = _study_file(study).parent if commit else None
-    _require_writable(folder, beside)
-    outcome = _outcome(asked, None, prove=True)
+    beside = study_file(study).parent if commit else None
+    require_writable_folders(folder, beside)
+    outcome = outcome_of(asked, None, prove=True)
     files = write_run(outcome, folder, f"linkwright run {study}", beside)
     console.print_outcome(outcome, files, json)
 
@@ -101,78 +80,13 @@ def optimise(study: StudyArgument, json: JsonOption = False) -> None:
     from kinematics.errors import InvalidValue
     from studies import console
 
-    asked = _load(study).model_copy(update={"trajectory": None})
+    asked = load(study).model_copy(update={"trajectory": None})
     if asked.optimise is None:
         raise InvalidValue(f"study {asked.name}", "no [optimise] table", "one with the variables to optimise")
-    console.print_outcome(_outcome(asked, None), [], json)
+    console.print_outcome(outcome_of(asked, None), [], json)
 
 
-@app.command("map")
-def map_(
-    study: StudyArgument,
-    margin: Annotated[
-        str | None,
-        typer.Option("--margin", help="Any margin of the mechanism, v_w, f_w or condition_number; fvi if not given."),
-    ] = None,
-    section: Annotated[
-        str | None,
-        typer.Option("--section", metavar="A,B", help="The plane, such as y,z; the first two that vary if not given."),
-    ] = None,
-    at: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--at",
-            metavar="NAME=VALUE[,...]",
-            help="Fix another coordinate, such as theta_deg=0; of several values the worst counts, "
-            "as it does over the whole interval if not given.",
-        ),
-    ] = None,
-    over: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--over",
-            metavar="NAME=LOW:HIGH",
-            help="Other bounds than the study's region has, such as z_mm=-800:800, or radius=0.7 of a cylinder.",
-        ),
-    ] = None,
-    at_least: Annotated[
-        float | None,
-        typer.Option(
-            "--at-least",
-            metavar="C",
-            help="Bound of the area and the boundary; for condition_number it is an upper one. "
-            "If not given: the study's requirement; 1 for fvi; else all in reach.",
-        ),
-    ] = None,
-    certified: Annotated[
-        bool, typer.Option("--certified", help="Prove too: the largest cylinder's radius, or the plane's cells.")
-    ] = False,
-    tolerance: Annotated[
-        float, typer.Option("--tolerance", help="By what part the figures may still move when the grid is refined.")
-    ] = 1e-3,
-    out: OutOption = None,
-    json: JsonOption = False,
-    prototype: PrototypeOption = False,
-) -> None:
-    """Map an index over a plane of the workspace: area, mean, deviation, boundary, picture and numbers.
-
-    linkwright map heli4 --certified
-
-    linkwright map redundant_3t1r --over y=-0.3187:0.3187 --over z=-0.8:0.8 --at theta_deg=0
-    """
-    from studies import console
-    from studies.map_console import print_map
-    from studies.map_files import write_map
-    from studies.map_options import map_request
-    from studies.map_stage import run_map
-
-    asked = _load(study)
-    request = map_request(asked, _robot(study, asked, prototype), margin, section, at or (), over or (), at_least)
-    folder = out or Path("out") / asked.name
-    _require_writable(folder)
-    with console.progress() as tell:
-        outcome = run_map(request, tolerance, certified, tell)
-    print_map(outcome, write_map(outcome, folder), json)
+app.command("map")(map_)
 
 
 @app.command()
@@ -202,10 +116,10 @@ def certify(
     from studies.certify import question_of
     from studies.outputs import write_proofs
 
-    asked = _load(study)
-    question = question_of(asked, _robot(study, asked, prototype))
+    asked = load(study)
+    question = question_of(asked, robot_for(study, asked, prototype))
     claims = question.only(margin, at_least)
-    _require_writable(out)
+    require_writable_folders(out)
     with console.progress() as tell:
         proofs = [question.prove(claim, None, None, tell) for claim in claims]
     console.print_proofs(question, proofs, write_proofs(proofs, out) if out else [], json)
@@ -244,11 +158,11 @@ def trajectory(
         raise InvalidValue("--format", ", ".join(formats), "--out with it, the folder for the files")
     for name in formats or ():
         format_named(name)
-    asked = _load(study, formats)
+    asked = load(study, formats)
     if asked.trajectory is None:
         raise InvalidValue(f"study {asked.name}", "no [trajectory] table", "one with the cycle to time")
-    robot = _robot(study, _load(study), prototype)
-    _require_writable(out)
+    robot = robot_for(study, load(study), prototype)
+    require_writable_folders(out)
     with console.progress() as tell:
         tell("cycle")
         timing = time_cycle(asked.trajectory.model_copy(update={"law": law or asked.trajectory.law}), robot)
@@ -268,12 +182,12 @@ def report(
     from studies.optimum import committed_certificates
     from studies.outputs import write_report
 
-    asked = _load(study)
-    robot = _robot(study, asked, prototype)
+    asked = load(study)
+    robot = robot_for(study, asked, prototype)
     folder = out or Path("out") / asked.name
-    _require_writable(folder)
-    known = committed_certificates(asked, _study_file(study).parent, robot)
-    outcome = _outcome(asked, robot, prove=True, known=known)
+    require_writable_folders(folder)
+    known = committed_certificates(asked, study_file(study).parent, robot)
+    outcome = outcome_of(asked, robot, prove=True, known=known)
     files = write_report(outcome, folder, f"linkwright report {study}")
     console.print_outcome(outcome, files, json)
 
@@ -298,9 +212,9 @@ def export(
     from studies import console
     from studies.outputs import write_model
 
-    asked = _load(study)
-    robot = _robot(study, asked, prototype)
-    _require_writable(out.parent)
+    asked = load(study)
+    robot = robot_for(study, asked, prototype)
+    require_writable_folders(out.parent)
     rod_middle = None if rods is None else {"split": 0.0, "uniform": UNIFORM}[rods]
     written = write_model(robot, asked, rod_middle, out)
     console.print_files([written], json)
@@ -328,7 +242,7 @@ def check(
         found = {}
         for name in names:
             tell(f"check {name}")
-            found[name] = check_study(_study_file(name))
+            found[name] = check_study(study_file(name))
     console.print_checks(found, json)
     if not all(row.holds for rows in found.values() for row in rows):
         raise typer.Exit(1)
@@ -353,47 +267,3 @@ def _interrupted(*_: object) -> None:
     show_cursor = "\x1b[?25h" if sys.stderr.isatty() else ""
     os.write(2, f"{show_cursor}\nlinkwright: interrupted, nothing was left half-written\n".encode())
     os._exit(130)
-
-
-def _study_file(given: str) -> Path:
-    from studies.locate import study_path
-
-    return study_path(given)
-
-
-def _load(given: str, formats: list[str] | None = None) -> Study:
-    """The study, checked against its mechanism; with other formats of drive files where they are given."""
-    from studies.load import load_study
-    from studies.setup import require_cycle_inside, require_drive_files
-
-    study = load_study(_study_file(given))
-    if formats and study.trajectory is not None:
-        files = study.trajectory.model_copy(update={"files": tuple(formats)})
-        study = study.model_copy(update={"trajectory": files})
-    require_cycle_inside(study, _study_file(given))
-    require_drive_files(study, _study_file(given))
-    return study
-
-
-def _require_writable(*folders: Path | None) -> None:
-    from trajectory import require_writable
-
-    for folder in folders:
-        if folder is not None:
-            require_writable(folder)
-
-
-def _robot(given: str, asked: Study, prototype: bool) -> Mechanism:
-    """The committed optimum beside the study, or the study's own geometry."""
-    from studies import setup
-    from studies.optimum import committed
-
-    return (None if prototype else committed(asked, _study_file(given).parent)) or setup.robot_of(asked)
-
-
-def _outcome(asked: Study, robot: Any, prove: bool = False, known: Any = None) -> Outcome:
-    from studies import console, pipeline
-
-    with console.progress() as tell:
-        outcome = pipeline.run(asked, robot, tell)
-        return pipeline.certified(outcome, known or {}, tell) if prove else outcome

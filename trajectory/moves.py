@@ -26,8 +26,8 @@ from ruckig import (
 from kinematics import InvalidValue, Mechanism
 from kinematics.drives import from_actuators, to_actuators
 from kinematics.dynamics import inverse_dynamics
-from kinematics.mechanism import checked
 from kinematics.motion import actuator_motion
+from kinematics.shapes import checked
 from trajectory.errors import LimitsExceeded, TimingFailed
 from trajectory.limits import Limits
 from trajectory.path import Array

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trajectory.knots import interval_of
 from trajectory.motion import PoseMotion, largest_speed, travelled, travelled_snap
 from trajectory.path import Array
 from trajectory.timed import TimedMotion
@@ -76,7 +77,7 @@ class PacedMotion:
         """As `TimedMotion.enclose_snap`."""
         along, half = self.pace.at(0.5 * low + 0.5 * high), (high - low) * (0.5 + _INSIDE)
         away, knots = half * largest_speed(along, half), self.motion.times
-        interval = np.clip(np.searchsorted(knots, along.position, side="right") - 1, 0, knots.size - 2)
+        interval = interval_of(knots, along.position)
         first, last = (np.clip(along.position + d, knots[interval], knots[interval + 1]) for d in (-away, away))
         least, most = self.motion.enclose_snap(first, last)
         _, *derivatives = self.motion.at(along.position)

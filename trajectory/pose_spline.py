@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinematics import InvalidShape, InvalidValue
+from trajectory.knots import located, throughout
 from trajectory.motion import PoseMotion
 from trajectory.path import Array, PathBox
 
-_ROUNDING = 1e-9  # of the duration, or of the largest value
+_ROUNDING = 1e-9  # of the largest value, or of an interval
 _SLACK = 1e-12  # relative and absolute: far more than what evaluation in double arithmetic is off by
 
 
@@ -68,18 +69,12 @@ class PoseSpline:
 
     def at(self, t: Array) -> PoseMotion:
         """As `TimedMotion.at`."""
-        t = np.asarray(t, dtype=float)
-        outside = ~((t >= -_ROUNDING * self.duration) & (t <= self.duration * (1 + _ROUNDING)))
-        if outside.any():
-            raise InvalidValue("time", float(t[outside].flat[0]), f"a number in [0, {self.duration:.9g}] s")
-        interval = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, self.times.size - 2)
-        return self._in_interval(interval, np.clip(t, 0.0, self.duration) - self.times[interval])
+        return self._in_interval(*located(self.times, t))
 
     def within(self, fractions: Array) -> tuple[Array, PoseMotion]:
         """As `TimedMotion.within`."""
-        since = np.diff(self.times)[:, None] * np.asarray(fractions, dtype=float)
-        interval = np.broadcast_to(np.arange(self.times.size - 1)[:, None], since.shape)
-        return self.times[:-1, None] + since, self._in_interval(interval, since)
+        interval, since = throughout(self.times, fractions)
+        return self.times[interval] + since, self._in_interval(interval, since)
 
     def stretched(self, factor: float) -> PoseSpline:
         """As `TimedMotion.stretched`."""

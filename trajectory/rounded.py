@@ -28,6 +28,7 @@ from trajectory.corner import (
     turned,
 )
 from trajectory.errors import InvalidPath
+from trajectory.knots import interval_of
 from trajectory.path import Array, Path, PathBox, checked_arc_length, pieces, places
 
 _STRAIGHT = 1e-12  # rad: a turn that is rounding
@@ -126,7 +127,7 @@ class RoundedPath:
         bounds = [np.broadcast_to(tangent[:, None], (s.size, places(self.pose_names)))]
         for at, values in self._angles:
             most = SEPTIC_MOST[order] * np.abs(np.diff(values)) / np.diff(at) ** order
-            bounds.append(most[_span(at, s)][:, None])
+            bounds.append(most[interval_of(at, s)][:, None])
         return np.concatenate(bounds, axis=-1)
 
     def _tangent_bounds(self, tangent: Array, middle: Array, low: Array, high: Array) -> Array:
@@ -140,7 +141,7 @@ class RoundedPath:
     def _within(self, s: Array) -> tuple[Array, Array]:
         """Which piece, and how far into it as a fraction."""
         edges, lengths = self._layout.edges, self._layout.lengths
-        piece = np.clip(np.searchsorted(edges, s, side="right") - 1, 0, lengths.size - 1)
+        piece = interval_of(edges, s)
         return piece, np.clip((s - edges[piece]) / lengths[piece], 0.0, 1.0)
 
     @cached_property
@@ -211,14 +212,9 @@ def _turn(first: Array, second: Array) -> tuple[float, Array]:
     return alpha, towards / size
 
 
-def _span(at: Array, s: Array) -> Array:
-    """Between which of the arc lengths at which an angle is given."""
-    return np.clip(np.searchsorted(at, s, side="right") - 1, 0, at.size - 2)
-
-
 def _angle(at: Array, values: Array, s: Array, order: int) -> list[Array]:
     """(..., 1) an angle and its derivatives by s."""
-    span = _span(at, s)
+    span = interval_of(at, s)
     extent, change = np.diff(at)[span], np.diff(values)[span][..., None]
     w = np.clip((s - at[span]) / extent, 0.0, 1.0)
     shares = evaluate(septic_program(), w[..., None], 1 / extent[..., None])
@@ -227,7 +223,7 @@ def _angle(at: Array, values: Array, s: Array, order: int) -> list[Array]:
 
 def _angle_bounds(at: Array, values: Array, low: Array, high: Array) -> tuple[Array, Array]:
     """(2, k) bounds of an angle, and of its rate, change times 140 w^3 (1 - w)^3, which rises up to w = 1/2."""
-    span = _span(at, 0.5 * low + 0.5 * high)
+    span = interval_of(at, 0.5 * low + 0.5 * high)
     extent, change = np.diff(at)[span], np.diff(values)[span]
     w = np.stack([np.clip((s - at[span]) / extent, 0.0, 1.0) for s in (low, high)])
     angle = values[span] + change * septic(w)

@@ -8,6 +8,7 @@ from typing import Protocol, Self
 import numpy as np
 
 from kinematics import InvalidValue
+from trajectory.knots import interval_of
 from trajectory.motion import PoseMotion, largest_speed, pose_motion, travelled_snap
 from trajectory.path import Array, Path
 from trajectory.timing import TimeLaw
@@ -152,8 +153,7 @@ class TimedPath:
         knots = np.array(self.path.knots)
         middles = (knots[1:] + knots[:-1]) / 2
         most, slope = (self.path.steepest(middles, order) for order in (4, 5))
-        first = np.clip(np.searchsorted(knots, low, side="left") - 1, 0, middles.size - 1)
-        last = np.clip(np.searchsorted(knots, high, side="right") - 1, 0, middles.size - 1)
+        first, last = interval_of(knots, low, "left"), interval_of(knots, high)
         anywhere = most[first]
         for k in range(1, int((last - first).max()) + 1):
             anywhere = np.maximum(anywhere, most[np.minimum(first + k, last)])

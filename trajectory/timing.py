@@ -8,9 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics import InvalidShape, InvalidValue
+from trajectory.knots import located, throughout
 from trajectory.path import Array
 
-_ROUNDING = 1e-9  # of the duration or the length
+_ROUNDING = 1e-9  # of the length or the speed
 
 
 class PathMotion(NamedTuple):
@@ -98,12 +99,7 @@ class TimeLaw:
         Raises:
             InvalidValue: a time outside the law by more than rounding, or not a number.
         """
-        t = np.asarray(t, dtype=float)
-        outside = ~((t >= -_ROUNDING * self.duration) & (t <= self.duration * (1 + _ROUNDING)))
-        if outside.any():
-            raise InvalidValue("time", float(t[outside].flat[0]), f"a number in [0, {self.duration:.9g}] s")
-        interval = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, self.times.size - 2)
-        return self._in_interval(interval, np.clip(t, 0.0, self.duration) - self.times[interval])
+        return self._in_interval(*located(self.times, t))
 
     def within(self, fractions: Array) -> tuple[Array, PathMotion]:
         """Every interval at fractions (k,) of its own time, so that 0 and 1 give its one-sided limits.
@@ -111,9 +107,8 @@ class TimeLaw:
         Returns:
             Times (n, k) [s] and the motion there, (n, k) each.
         """
-        since = np.diff(self.times)[:, None] * np.asarray(fractions, dtype=float)
-        interval = np.broadcast_to(np.arange(self.times.size - 1)[:, None], since.shape)
-        return self.times[:-1, None] + since, self._in_interval(interval, since)
+        interval, since = throughout(self.times, fractions)
+        return self.times[interval] + since, self._in_interval(interval, since)
 
     def stretched(self, factor: float) -> TimeLaw:
         """The same path travelled `factor` times as long.

@@ -23,7 +23,7 @@ class Auditor:
         c, model, numbers = certificate, robot.model(), Numbers.symbols()
         self.names, self.robot, self.certificate = robot.pose_names, robot, c
         middle = c.region.from_unit(np.full(c.region.dimension, 0.5), self.names)
-        claims = claims_of(robot, c.margin, numbers, c.at_least, middle)
+        claims = claims_of(c.statement(robot), numbers, middle)
         symbols = [model.pose, ca.vec(claims.scaling), model.geometry, numbers.vector]
         gradient = ca.jacobian(claims.expressions, model.pose)
         self._claims = _program(symbols, claims.expressions)
@@ -33,7 +33,7 @@ class Auditor:
         least, most = root(c.region, self.names)
         self._extent = np.where(most > least, most - least, 1.0)[0]
         self._fixed = [arb(v) for v in robot.geometry.vector()]
-        self._numbers = [arb(v) for v in Numbers.values(c.at_least, c.bounds, c.characteristic_length)]
+        self._numbers = Numbers.values(c.statement(robot))
         self._count = claims.expressions.numel()
         self._matrix, self._chosen = claims.matrix, claims.chosen
         if claims.matrix is not None:
@@ -62,7 +62,7 @@ class Auditor:
         """Whether the claims hold on a box by the mean-value form in balls, cut further where balls are too round."""
         middle = 0.5 * (low + high)
         scaling = self._scaling(middle)
-        tail = [*scaling, *self._fixed, *self._numbers]
+        tail = [*scaling, *self._fixed, *map(arb, self._numbers)]
         whole = [ball(a, b) for a, b in zip(low, high, strict=True)]
         values = replay(self._claims, [*(arb(float(v)) for v in middle), *tail], OPERATIONS)
         natural = replay(self._claims, [*whole, *tail], OPERATIONS)
@@ -87,10 +87,7 @@ class Auditor:
     def _scaling(self, middle: Array) -> list[arb]:
         if self._matrix is None:
             return []
-        numbers = Numbers.values(
-            self.certificate.at_least, self.certificate.bounds, self.certificate.characteristic_length
-        )
-        matrix = np.array(self._at(middle, self.robot.geometry.vector(), numbers))
+        matrix = np.array(self._at(middle, self.robot.geometry.vector(), self._numbers))
         return [arb(float(v)) for v in self._chosen(matrix[None])[0].T.ravel()]
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from design.claims import Numbers, claims_of
+from design.statement import Statement
 from kinematics import MECHANISMS, Mechanism
 from kinematics.interpreter import bulk, evaluate
 
@@ -23,10 +24,11 @@ def test_the_claims_hold_exactly_where_the_margin_reaches_the_bound(robot: Mecha
     values, poses = values[np.isfinite(values)], poses[np.isfinite(values)]
     assert len(poses) > 100
     bound = max(float(np.median(values)), 1e-6)
-    claims = claims_of(robot, margin, numbers, bound, home)
+    statement = Statement.of(robot, margin, bound)
+    claims = claims_of(statement, numbers, home)
     symbols = [model.pose, ca.vec(claims.scaling), model.geometry, numbers.vector]
     function = bulk(ca.Function("claims", symbols, [claims.expressions]))
-    tail = Numbers.values(bound, robot.fvi_bounds, robot.characteristic_length)
+    tail = Numbers.values(statement)
     scaling = np.empty((len(poses), *claims.scaling.shape))
     if claims.matrix is not None:
         at = ca.Function("matrix", [model.pose, model.geometry, numbers.vector], [claims.matrix])

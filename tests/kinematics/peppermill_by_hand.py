@@ -120,12 +120,3 @@ def assembled(geometry, rng, count, elbows=(1, 1), sides=(1, -1)):
     up = np.where(np.array(sides) > 0, above, above + np.pi)  # from j towards k, and from i towards k
     link_angle = np.stack([up[:, 0], np.pi / 2 - up[:, 1]], axis=-1)  # limb 2 counts from k towards i
     return ByHand(geometry).assembled(link_angle - elbow, link_angle)
-
-
-def central(function, pose, step=1e-5):
-    """(..., m, n) by central differences with one Richardson step."""
-    rows = []
-    for k in np.eye(4) * step:
-        one, two = ((function(pose + s * k) - function(pose - s * k)) / (2 * s * step) for s in (1.0, 2.0))
-        rows.append((4 * one - two) / 3)
-    return np.stack(rows, axis=-1)

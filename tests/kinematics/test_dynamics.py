@@ -1,5 +1,7 @@
 """Torques against the energy of the moving masses, written independently of the model's bodies."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,7 @@ from kinematics import Heli4, InvalidShape
 from kinematics.dynamics import inverse_dynamics
 from kinematics.heli4 import Heli4Inertia
 from tests.kinematics.by_hand import OBLIQUE, ByHand, cylinder
-from tests.kinematics.test_heli4_jacobians import differences
+from tests.kinematics.numeric import differences, lagrange, slope
 from tests.kinematics.test_motion import TIMES, pose_and_derivatives
 
 G = 9.80665
@@ -46,25 +48,16 @@ def test_power_of_the_drives_is_the_rate_of_the_energy(robot, payload):
     pose, velocity, acceleration = pose_and_derivatives(TIMES)[:3]
     torque = inverse_dynamics(robot, payload, pose, velocity, acceleration)
     rates = (robot.inverse_jacobian(pose) @ velocity[..., None])[..., 0]
-    near, far = ((energy(TIMES + k * 1e-3) - energy(TIMES - k * 1e-3)) / (2e-3 * k) for k in (1, 2))
     power = (torque * rates).sum(-1)
-    assert np.abs(power - (4 * near - far) / 3).max() < 1e-8 * np.abs(power).max()
+    assert np.abs(power - slope(energy, TIMES, 1e-3)).max() < 1e-8 * np.abs(power).max()
 
 
 @ROBOTS
 def test_each_torque_follows_from_the_energy_by_lagrange(robot):
     """d/dt dT/dv - dT/dx + dV/dx = J_m^T tau, component by component."""
     pose, velocity, acceleration = (part[:50] for part in pose_and_derivatives(TIMES)[:3])
-
-    def momentum(x, v):
-        return differences(lambda w: kinetic(robot, 1.5, x, w), v, 1e-2)
-
-    step = 1e-4
-    rate = (
-        momentum(pose + step * velocity, velocity + step * acceleration)
-        - momentum(pose - step * velocity, velocity - step * acceleration)
-    ) / (2 * step)
-    force = rate + differences(lambda x: potential(robot, 1.5, x) - kinetic(robot, 1.5, x, velocity), pose, 1e-4)
+    energies = partial(kinetic, robot, 1.5), partial(potential, robot, 1.5)
+    force = lagrange(*energies, pose, velocity, acceleration)
     torque = inverse_dynamics(robot, 1.5, pose, velocity, acceleration)
     found = (np.swapaxes(robot.inverse_jacobian(pose), -1, -2) @ torque[..., None])[..., 0]
     assert np.abs(found - force).max() < 1e-6 * np.abs(force).max()

@@ -1,5 +1,7 @@
 """Leg forces of a hexapod against the energy of its masses, written independently: by numbers, without Jacobians."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,7 @@ from kinematics.dynamics import inverse_dynamics
 from kinematics.gough_stewart_geometry import GoughStewartInertia
 from kinematics.motion import actuator_motion
 from kinematics.orientation import rotation
-from tests.kinematics.test_heli4_jacobians import differences
+from tests.kinematics.numeric import differences, lagrange, slope
 
 G = 9.80665
 HEAVY = GoughStewart(inertia=GoughStewartInertia(screw_lead=0.02, drive=5e-4, rod_mass=1.7, platform_mass=7.0))
@@ -56,24 +58,15 @@ def test_power_of_the_legs_is_the_rate_of_the_energy(robot, payload):
     pose, velocity, acceleration = motion(TIMES)
     force = inverse_dynamics(robot, payload, pose, velocity, acceleration)
     power = (force * actuator_motion(robot, pose, velocity, acceleration, np.zeros(6)).first).sum(-1)
-    near, far = ((energy(TIMES + k * 1e-3) - energy(TIMES - k * 1e-3)) / (2e-3 * k) for k in (1, 2))
-    assert np.abs(power - (4 * near - far) / 3).max() < 1e-8 * np.abs(power).max()
+    assert np.abs(power - slope(energy, TIMES, 1e-3)).max() < 1e-8 * np.abs(power).max()
 
 
 @ROBOTS
 def test_each_leg_s_force_follows_from_the_energy_by_lagrange(robot):
     """d/dt dT/dv - dT/dx + dV/dx = (dq/dx)^T f, for each of the six coordinates, Euler angles and all."""
     pose, velocity, acceleration = (part[:40] for part in motion(TIMES))
-
-    def momentum(x, v):
-        return differences(lambda w: kinetic(robot, 1.5, x, w), v, 1e-2)
-
-    step = 1e-4
-    rate = (
-        momentum(pose + step * velocity, velocity + step * acceleration)
-        - momentum(pose - step * velocity, velocity - step * acceleration)
-    ) / (2 * step)
-    wanted = rate + differences(lambda x: potential(robot, 1.5, x) - kinetic(robot, 1.5, x, velocity), pose, 1e-4)
+    energies = partial(kinetic, robot, 1.5), partial(potential, robot, 1.5)
+    wanted = lagrange(*energies, pose, velocity, acceleration)
     force = inverse_dynamics(robot, 1.5, pose, velocity, acceleration)
     slopes = differences(robot.inverse, pose, 1e-4)
     found = (np.swapaxes(slopes, -1, -2) @ force[..., None])[..., 0]

@@ -91,12 +91,12 @@ def test_dietmaiers_platform_has_forty_real_poses() -> None:
 
 
 def test_a_known_pose_is_always_among_the_modes() -> None:
-    """160 random poses: the default robot, the octahedron, planar and spatial random ones, any frames."""
+    """96 random poses: the default robot, the octahedron, planar and spatial random ones, any frames."""
     rng = np.random.default_rng(5)
     robots = [GoughStewart(), GoughStewart(Geometry.mssm()), GoughStewart(Geometry.tssm())]
     robots += [random_robot(rng, planar=k % 2 == 0) for k in range(5)]
     for robot in robots:
-        poses = anywhere(rng, 20)
+        poses = anywhere(rng, 12)
         for pose, joints in zip(poses, robot.inverse(poses), strict=True):
             found = robot.assembly_modes(joints)
             assert nearest(found, pose) < 1e-8

@@ -5,21 +5,10 @@ import pytest
 
 from kinematics import Heli4
 from tests.kinematics.by_hand import OBLIQUE, UPPER, ByHand, cylinder
+from tests.kinematics.numeric import differences
 
 BOTH = pytest.mark.parametrize("robot", [Heli4(), Heli4(OBLIQUE)], ids=["prototype", "oblique"])
 POSES = cylinder(2_000, seed=1, radius=0.3)
-
-
-def differences(function, at, step):
-    """Fourth-order central differences by the last axis: (..., rows, columns)."""
-    columns = []
-    for i in range(at.shape[-1]):
-        e = np.zeros(at.shape[-1])
-        e[i] = step
-        columns.append(
-            (8 * (function(at + e) - function(at - e)) - (function(at + 2 * e) - function(at - 2 * e))) / (12 * step)
-        )
-    return np.stack(columns, axis=-1)
 
 
 @BOTH

@@ -6,6 +6,7 @@ import pytest
 from kinematics import Heli4, InvalidShape
 from kinematics.motion import joint_motion
 from tests.kinematics.by_hand import OBLIQUE
+from tests.kinematics.numeric import slope
 
 CENTRE, SWING = np.array([0.03, -0.05, -0.7, 0.4]), np.array([0.18, 0.15, 0.06, 1.5])
 PACE, PHASE = np.array([1.1, 0.8, 1.3, 0.9]), np.array([0.3, 1.9, -0.7, 0.1])
@@ -26,15 +27,12 @@ def test_each_derivative_is_the_slope_of_the_one_before(robot):
     def motion(t):
         return joint_motion(robot, *pose_and_derivatives(t)[:4])
 
-    step = 1e-3
     found = motion(TIMES)
     # Two programs: they may round differently.
     np.testing.assert_allclose(found.position, robot.inverse(pose_and_derivatives(TIMES)[0]), rtol=1e-14)
     for lower, higher in zip(range(3), found[1:], strict=True):
-        near, far = (
-            (motion(TIMES + k * step)[lower] - motion(TIMES - k * step)[lower]) / (2 * k * step) for k in (1, 2)
-        )
-        assert np.abs((4 * near - far) / 3 - higher).max() < 1e-8 * max(1.0, np.abs(higher).max())
+        expected = slope(lambda t, k=lower: motion(t)[k], TIMES, 1e-3)
+        assert np.abs(expected - higher).max() < 1e-8 * max(1.0, np.abs(higher).max())
 
 
 def test_speed_is_the_inverse_jacobian_times_the_twist():

@@ -6,7 +6,8 @@ import pytest
 
 from kinematics import InvalidValue, Peppermill, UnreachablePose
 from kinematics.peppermill_singularities import links, singularity_kinds
-from tests.kinematics.peppermill_by_hand import TURN, ByHand, assembled, box, central, random_geometry
+from tests.kinematics.numeric import differences
+from tests.kinematics.peppermill_by_hand import TURN, ByHand, assembled, box, random_geometry
 
 GEOMETRY = Peppermill.Geometry()
 UNLIKE = Peppermill.Geometry((0.22, 0.17), (0.48, 0.61), 0.55, (0.09, -0.13), 0.06)
@@ -61,10 +62,10 @@ def test_inverse_jacobian_is_the_derivative_of_the_closed_form():
 def test_jacobians_against_central_differences_of_the_models():
     robot, pose = Peppermill(), box(20_000, seed=5)
     joints = robot.inverse(pose)
-    assert np.abs(robot.inverse_jacobian(pose) - central(robot.inverse, pose)).max() < 1e-9
-    motors = central(lambda p: robot.motors(robot.inverse(p)), pose)
+    assert np.abs(robot.inverse_jacobian(pose) - differences(robot.inverse, pose, 1e-4)).max() < 1e-9
+    motors = differences(lambda p: robot.motors(robot.inverse(p)), pose, 1e-4)
     assert np.abs(robot.actuator_jacobian(pose) - motors).max() < 1e-7  # entries up to 2 pi / p_c
-    there_and_back = central(robot.forward, joints) @ robot.inverse_jacobian(pose)
+    there_and_back = differences(robot.forward, joints, 1e-4) @ robot.inverse_jacobian(pose)
     assert np.abs(there_and_back - np.eye(4)).max() < 1e-8
 
 

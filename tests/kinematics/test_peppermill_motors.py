@@ -10,7 +10,8 @@ from kinematics import FviBounds, Heli4, Peppermill
 from kinematics.drives import from_actuators, to_actuators
 from kinematics.dynamics import inverse_dynamics
 from kinematics.motion import actuator_motion, joint_motion
-from tests.kinematics.peppermill_by_hand import TURN, ByHand, assembled, box, central
+from tests.kinematics.numeric import differences, slope
+from tests.kinematics.peppermill_by_hand import TURN, ByHand, assembled, box
 
 GEOMETRY = Peppermill.Geometry()
 UNLIKE = Peppermill.Geometry((0.22, 0.17), (0.48, 0.61), 0.55, (0.09, -0.13), 0.06)
@@ -117,13 +118,11 @@ def swing(t):
 
 
 def test_motor_motion_is_the_time_derivative_of_the_motors():
-    robot, t, h = Peppermill(UNLIKE), np.linspace(0, 1, 200), 1e-3
+    robot, t = Peppermill(UNLIKE), np.linspace(0, 1, 200)
     found = actuator_motion(robot, *swing(t))
     assert np.abs(found.position - robot.motors(robot.inverse(swing(t)[0]))).max() < 1e-12
-    samples = [actuator_motion(robot, *swing(t + k * h)) for k in (-2, -1, 1, 2)]
     for k in range(3):
-        a, b, c, d = (s[k] for s in samples)
-        numeric = (a - 8 * b + 8 * c - d) / (12 * h)
+        numeric = slope(lambda t, k=k: actuator_motion(robot, *swing(t))[k], t, 1e-3)
         np.testing.assert_allclose(found[k + 1], numeric, atol=1e-8 * np.abs(found[k + 1]).max())
     for motors, joints in zip(found, joint_motion(robot, *swing(t)), strict=True):
         np.testing.assert_allclose(motors, joints @ ByHand(UNLIKE).drives.T, rtol=1e-11, atol=1e-9)
@@ -131,7 +130,7 @@ def test_motor_motion_is_the_time_derivative_of_the_motors():
 
 def energy(robot, t, payload):
     """Kinetic and potential energy by hand, velocities by five-point differences of the points."""
-    i, g, hand, h = robot.inertia, robot.geometry, ByHand(robot.geometry), 1e-4
+    i, g, hand = robot.inertia, robot.geometry, ByHand(robot.geometry)
 
     def points(at):
         pose = swing(at)[0]
@@ -141,8 +140,7 @@ def energy(robot, t, payload):
         return carriage, link, elbow, hand.nuts(pose), pose[:, None, :3], joints @ hand.drives.T, joints[:, 2:], pose
 
     def rate(k):
-        a, b, c, d = (points(t + s * h)[k] for s in (-2, -1, 1, 2))
-        return (a - 8 * b + 8 * c - d) / (12 * h)
+        return slope(lambda t: points(t)[k], t, 1e-4)
 
     masses = [i.carriage_mass, i.proximal_mass, i.distal_mass / 2, i.nut_mass + i.distal_mass / 2]
     masses.append(i.platform_mass + payload)
@@ -156,12 +154,11 @@ def energy(robot, t, payload):
 
 
 def test_motor_torques_times_motor_speeds_are_the_power():
-    robot, t, h = Peppermill(UNLIKE), np.linspace(0, 1, 50), 1e-3
+    robot, t = Peppermill(UNLIKE), np.linspace(0, 1, 50)
     pose, velocity, acceleration, _ = swing(t)
     torque = inverse_dynamics(robot, 1.0, pose, velocity, acceleration)
     power = (torque * actuator_motion(robot, *swing(t)).first).sum(-1)
-    a, b, c, d = (energy(robot, t + k * h, 1.0) for k in (-2, -1, 1, 2))
-    np.testing.assert_allclose(power, (a - 8 * b + 8 * c - d) / (12 * h), atol=1e-6 * np.abs(power).max())
+    np.testing.assert_allclose(power, slope(lambda t: energy(robot, t, 1.0), t, 1e-3), atol=1e-6 * np.abs(power).max())
 
 
 def test_motors_bear_the_weight_that_virtual_work_asks():
@@ -178,7 +175,7 @@ def test_motors_bear_the_weight_that_virtual_work_asks():
 
     torque = inverse_dynamics(robot, 1.0, pose, rest, rest)
     found = np.einsum("kmn,km->kn", robot.actuator_jacobian(pose), torque)
-    assert np.abs(found - central(potential, pose)[:, 0]).max() < 1e-7
+    assert np.abs(found - differences(potential, pose, 1e-4)[:, 0]).max() < 1e-7
 
 
 # The base, for robots whose drives are their joints.

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import io
 import os
 import shutil
+import signal
 import subprocess
 import sys
+from contextlib import ExitStack, chdir, redirect_stderr, redirect_stdout
+from dataclasses import dataclass
 from pathlib import Path
+from unittest.mock import patch
+
+import pytest
+
+from studies.cli import main
 
 SMALL = """\
 title = "Two variables"
@@ -53,13 +62,42 @@ speed_rpm = 190
 torque = 127
 """
 
-SmallRun = tuple[Path, subprocess.CompletedProcess[str]]  # the folder of study and optimum; how `run` ended
+
+@dataclass(frozen=True)
+class Ended:
+    """How a command ended, and what it printed."""
+
+    returncode: int
+    stdout: str
+    stderr: str
 
 
-def linkwright(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+SmallRun = tuple[Path, Ended]  # the folder of study and optimum; how `run` ended
+ENVIRONMENT = {"COLUMNS": "200", "NO_COLOR": "1"}
+
+
+def linkwright(*arguments: object, cwd: Path | None = None) -> Ended:
+    """The command in this process, which has the libraries loaded; a traceback would come through as its exception."""
+    words, out, err = ["linkwright", *map(str, arguments)], io.StringIO(), io.StringIO()
+    interrupt = signal.getsignal(signal.SIGINT)
+    with ExitStack() as stack:
+        stack.callback(signal.signal, signal.SIGINT, interrupt)
+        stack.enter_context(patch.object(sys, "argv", words))
+        stack.enter_context(patch.dict(os.environ, ENVIRONMENT))
+        stack.enter_context(chdir(cwd or Path.cwd()))
+        stack.enter_context(redirect_stdout(out))
+        stack.enter_context(redirect_stderr(err))
+        with pytest.raises(SystemExit) as left:
+            main()
+    assert isinstance(left.value.code, int)
+    return Ended(left.value.code, out.getvalue(), err.getvalue())
+
+
+def linkwright_apart(*arguments: object) -> Ended:
+    """The command in a process of its own, its output in pipes."""
     call = [sys.executable, "-c", "from studies.cli import main; main()", *map(str, arguments)]
-    environment = os.environ | {"COLUMNS": "200", "NO_COLOR": "1"}
-    return subprocess.run(call, capture_output=True, text=True, cwd=cwd, check=False, env=environment)
+    ended = subprocess.run(call, capture_output=True, text=True, check=False, env=os.environ | ENVIRONMENT)
+    return Ended(ended.returncode, ended.stdout, ended.stderr)
 
 
 def copy_of(run: Path, folder: Path) -> Path:

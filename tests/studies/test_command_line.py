@@ -14,7 +14,7 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 from studies.cli import app
-from tests.studies.command_line import SMALL, linkwright
+from tests.studies.command_line import SMALL, linkwright, linkwright_apart
 
 GROUP = get_command(app)
 assert isinstance(GROUP, TyperGroup)
@@ -55,6 +55,13 @@ def test_every_commands_help_has_examples_that_the_command_takes(command: str) -
         parser.make_context(command, example[2:])
 
 
+def test_an_error_is_a_message_and_an_exit_status_and_no_traceback(tmp_path: Path) -> None:
+    ended = linkwright_apart("trajectory", tmp_path)
+    assert (ended.returncode, ended.stdout) == (2, "")
+    assert ended.stderr.startswith("linkwright: ")
+    assert "Traceback" not in ended.stderr
+
+
 def test_list_shows_the_mechanisms_and_the_studies() -> None:
     data = json.loads(linkwright("list", "--json").stdout)
     assert "Heli4" in data["mechanisms"]
@@ -82,7 +89,6 @@ def test_wrong_input_exits_2_with_its_place(tmp_path: Path, change: tuple[str, .
     (tmp_path / "study.toml").write_text(text)
     ended = linkwright("trajectory", tmp_path, "--prototype")
     assert ended.returncode == 2, ended.stdout
-    assert "Traceback" not in ended.stderr
     for word in named:
         assert word in ended.stderr
 
@@ -162,5 +168,6 @@ def test_all_four_packages_belong_to_this_distribution() -> None:
     assert distribution("linkwright").version
     roots = {Path(package.__file__).parents[1] for package in (kinematics, design, trajectory, studies)}
     assert len(roots) == 1
+    owners = packages_distributions()
     for name in ("kinematics", "design", "trajectory", "studies"):
-        assert set(packages_distributions()[name]) == {"linkwright"}
+        assert set(owners[name]) == {"linkwright"}

@@ -10,11 +10,11 @@ import mujoco
 import numpy as np
 import pytest
 
-from studies.cli import main
 from studies.load import load_study
 from studies.locate import FOLDER
 from studies.optimum import committed
 from studies.setup import robot_of
+from tests.studies.command_line import linkwright
 
 
 @pytest.fixture(autouse=True)
@@ -22,22 +22,12 @@ def fake_mechanism() -> None:
     """The real mechanisms here, in place of the other files' stand-in."""
 
 
-def linkwright(monkeypatch: pytest.MonkeyPatch, *words: object) -> None:
-    monkeypatch.setattr("sys.argv", ["linkwright", *map(str, words)])
-    with pytest.raises(SystemExit) as left:
-        main()
-    if left.value.code:
-        raise left.value
-
-
 @pytest.mark.parametrize("rods", ["split", "uniform"])
 @pytest.mark.parametrize("study", ["heli4", "redundant_3t1r", "peppermill", "gough_stewart"])
-def test_the_file_starts_at_the_studys_cycle_with_its_loops_closed(
-    study: str, rods: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_file_starts_at_the_studys_cycle_with_its_loops_closed(study: str, rods: str, tmp_path: Path) -> None:
     file = tmp_path / "models" / "robot.xml"
-    linkwright(monkeypatch, "export", study, "--format", "mjcf", "--rods", rods, "--out", file, "--json")
-    assert json.loads(capsys.readouterr().out) == {"files": [str(file)]}
+    ended = linkwright("export", study, "--format", "mjcf", "--rods", rods, "--out", file, "--json")
+    assert json.loads(ended.stdout) == {"files": [str(file)]}
     model = mujoco.MjModel.from_xml_path(str(file))
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
@@ -52,10 +42,10 @@ def test_the_file_starts_at_the_studys_cycle_with_its_loops_closed(
     assert joints == pytest.approx(robot.inverse(np.array(start)).tolist(), abs=1e-14)
 
 
-def test_prototype_and_optimum_are_different_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_prototype_and_optimum_are_different_files(tmp_path: Path) -> None:
     texts = []
     for more in ([], ["--prototype"]):
-        linkwright(monkeypatch, "export", "heli4", "--out", tmp_path / "robot.xml", *more)
+        assert linkwright("export", "heli4", "--out", tmp_path / "robot.xml", *more).returncode == 0
         texts.append((tmp_path / "robot.xml").read_text())
         assert ElementTree.fromstring(texts[-1]).tag == "mujoco"
     assert texts[0] != texts[1]
@@ -72,24 +62,16 @@ def test_prototype_and_optimum_are_different_files(tmp_path: Path, monkeypatch: 
         (["heli4", "--out", "folder"], "folder"),
     ],
 )
-def test_wrong_input_exits_2_and_leaves_nothing(
-    words: list[str],
-    message: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_wrong_input_exits_2_and_leaves_nothing(words: list[str], message: str, tmp_path: Path) -> None:
     (tmp_path / "folder").mkdir()
-    with pytest.raises(SystemExit) as left:
-        linkwright(monkeypatch, "export", *words)
-    assert left.value.code == 2
-    assert message in capsys.readouterr().err
+    ended = linkwright("export", *words, cwd=tmp_path)
+    assert ended.returncode == 2
+    assert message in ended.stderr
     assert [p.name for p in tmp_path.rglob("*")] == ["folder"]
 
 
 def test_a_mechanism_without_a_model_is_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path,
 ) -> None:
     study = tmp_path / "delta" / "study.toml"
     study.parent.mkdir()
@@ -98,7 +80,6 @@ def test_a_mechanism_without_a_model_is_named(
         "x = [-0.1, 0.1]\ny = [-0.1, 0.1]\nz = [-0.8, -0.7]\n"
         '[[requirement]]\nmargin = "reach"\nat_least = 0.0\n'
     )
-    with pytest.raises(SystemExit) as left:
-        linkwright(monkeypatch, "export", study, "--out", tmp_path / "delta.xml")
-    assert left.value.code == 2
-    assert "Delta; expected one of Heli4, Redundant3T1R, Peppermill, GoughStewart" in capsys.readouterr().err
+    ended = linkwright("export", study, "--out", tmp_path / "delta.xml")
+    assert ended.returncode == 2
+    assert "Delta; expected one of Heli4, Redundant3T1R, Peppermill, GoughStewart" in ended.stderr

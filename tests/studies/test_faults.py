@@ -136,6 +136,12 @@ FAULTS = {
 }
 
 
+def refused(path: Path) -> StudyError:
+    with pytest.raises(StudyError) as caught:
+        load_study(path)
+    return caught.value
+
+
 @pytest.mark.parametrize(("old", "new", "key", "says"), FAULTS.values(), ids=FAULTS)
 def test_a_fault_names_file_key_line_and_what_was_expected(
     write: Write, study_text: str, old: str, new: str, key: str, says: str
@@ -143,9 +149,8 @@ def test_a_fault_names_file_key_line_and_what_was_expected(
     before, found, after = study_text.partition(old)
     assert found
     path = write(before + new + after)
-    with pytest.raises(StudyError) as caught:
-        load_study(path)
-    [problem] = [problem for problem in caught.value.problems if problem.key == key]
+    error = refused(path)
+    [problem] = [problem for problem in error.problems if problem.key == key]
     assert (problem.file, problem.line) == (path, (before + new).count("\n") + 1)
     assert str(problem).startswith(f"{path}:{problem.line}: {key}: found ")
     assert says in str(problem)
@@ -164,16 +169,14 @@ def test_a_fault_names_file_key_line_and_what_was_expected(
 def test_a_missing_key_is_reported_at_its_table(
     write: Write, minimal_text: str, left_out: str, key: str, line: int
 ) -> None:
-    with pytest.raises(StudyError) as caught:
-        load_study(write(minimal_text.replace(left_out, "")))
-    assert (caught.value.key, caught.value.line, caught.value.found) == (key, line, "nothing")
-    assert len(caught.value.problems) == 1
+    error = refused(write(minimal_text.replace(left_out, "")))
+    assert (error.key, error.line, error.found) == (key, line, "nothing")
+    assert len(error.problems) == 1
 
 
 def test_a_region_without_keys_lacks_its_kind(write: Write, minimal_text: str) -> None:
-    with pytest.raises(StudyError) as caught:
-        load_study(write(minimal_text.partition("kind")[0]))
-    assert [(problem.key, problem.line) for problem in caught.value.problems] == [("region.kind", 3)]
+    error = refused(write(minimal_text.partition("kind")[0]))
+    assert [(problem.key, problem.line) for problem in error.problems] == [("region.kind", 3)]
 
 
 def test_a_missing_table_is_reported(write: Write, minimal_text: str) -> None:
@@ -197,18 +200,16 @@ def test_a_missing_table_is_reported(write: Write, minimal_text: str) -> None:
     ],
 )
 def test_what_should_be_a_table_is_told(write: Write, minimal_text: str, text: str, key: str, says: str) -> None:
-    with pytest.raises(StudyError) as caught:
-        load_study(write(minimal_text + text))
-    [problem] = [problem for problem in caught.value.problems if problem.key == key]
+    error = refused(write(minimal_text + text))
+    [problem] = [problem for problem in error.problems if problem.key == key]
     assert says in str(problem)
 
 
 @pytest.mark.parametrize(("region", "found"), [("3", "3"), ("[{ kind = 'box' }]", "[a table]")])
 def test_a_region_that_is_no_table_is_told(write: Write, minimal_text: str, region: str, found: str) -> None:
     text = minimal_text.partition("[region]")[0] + f"region = {region}\n"
-    with pytest.raises(StudyError) as caught:
-        load_study(write(text))
-    assert (caught.value.key, caught.value.line, caught.value.found) == ("region", 3, found)
+    error = refused(write(text))
+    assert (error.key, error.line, error.found) == ("region", 3, found)
 
 
 def test_a_box_may_not_name_a_coordinate_that_the_mechanism_lacks(write: Write, minimal_text: str) -> None:
@@ -217,26 +218,23 @@ def test_a_box_may_not_name_a_coordinate_that_the_mechanism_lacks(write: Write, 
 
 
 def test_a_misspelt_key_is_not_reported_as_missing_too(write: Write, study_text: str) -> None:
-    with pytest.raises(StudyError) as caught:
-        load_study(write(study_text.replace("radius =", "radus =").replace("lift_mm", "lift_inch")))
-    assert [problem.key for problem in caught.value.problems] == [
+    error = refused(write(study_text.replace("radius =", "radus =").replace("lift_mm", "lift_inch")))
+    assert [problem.key for problem in error.problems] == [
         "region.radus",
         "trajectory.cycle.lift_inch",
     ]
 
 
 def test_a_key_and_its_misspelling_are_both_judged(write: Write, study_text: str) -> None:
-    with pytest.raises(StudyError) as caught:
-        load_study(write(study_text.replace("grid = 2000", "grid = 10\ngridd = 10")))
-    assert [problem.key for problem in caught.value.problems] == ["trajectory.grid", "trajectory.gridd"]
+    error = refused(write(study_text.replace("grid = 2000", "grid = 10\ngridd = 10")))
+    assert [problem.key for problem in error.problems] == ["trajectory.grid", "trajectory.gridd"]
 
 
 def test_all_faults_are_reported_one_a_line_in_the_files_order(write: Write, study_text: str) -> None:
     text = study_text.replace("= 0.5\n", "= -1\n").replace("[20, 120]", "[3]").replace("351", "0")
     path = write(text.replace("grid = 2000", "grid = 1").replace('"J_q"', "3").replace("theta_deg", "theta_m"))
-    with pytest.raises(StudyError) as caught:
-        load_study(path)
-    lines = str(caught.value).splitlines()
+    error = refused(path)
+    lines = str(error).splitlines()
     assert [line.split(": ")[:2] for line in lines] == [
         [f"{path}:5", "geometry.arm_length_mm"],
         [f"{path}:10", "region.radius"],
@@ -248,30 +246,26 @@ def test_all_faults_are_reported_one_a_line_in_the_files_order(write: Write, stu
 
 
 def test_an_unknown_mechanism_does_not_hide_other_faults(write: Write, study_text: str) -> None:
-    with pytest.raises(StudyError) as caught:
-        load_study(write(study_text.replace('"Fake"', '"Nope"').replace("grid = 2000", "grid = 1")))
-    assert [problem.key for problem in caught.value.problems] == ["mechanism", "trajectory.grid"]
+    error = refused(write(study_text.replace('"Fake"', '"Nope"').replace("grid = 2000", "grid = 1")))
+    assert [problem.key for problem in error.problems] == ["mechanism", "trajectory.grid"]
 
 
 def test_the_second_row_of_an_array_of_tables_is_told_by_its_line(write: Write, minimal_text: str) -> None:
     rows = '[[requirement]]\nmargin = "J_q"\nat_least = 0\n[[requirement]]\nmargin = "x"\nat_least = 0\n'
-    with pytest.raises(StudyError) as caught:
-        load_study(write(minimal_text + rows))
-    assert (caught.value.key, caught.value.line) == ("requirement.margin", 13)
+    error = refused(write(minimal_text + rows))
+    assert (error.key, error.line) == ("requirement.margin", 13)
 
 
 def test_a_fault_in_an_inline_array_of_tables_has_its_own_line(write: Write, minimal_text: str) -> None:
     rows = 'requirement = [\n  { margin = "J_q", at_least = 0 },\n  { margin = "J_q", at_least = "0" },\n]\n'
-    with pytest.raises(StudyError) as caught:
-        load_study(write(rows + minimal_text))
-    assert (caught.value.key, caught.value.line) == ("requirement.at_least", 3)
+    error = refused(write(rows + minimal_text))
+    assert (error.key, error.line) == ("requirement.at_least", 3)
 
 
 def test_a_study_error_survives_pickling(write: Write) -> None:
-    with pytest.raises(StudyError) as caught:
-        load_study(write("a = 1"))
-    assert isinstance(caught.value, LinkwrightError)
-    assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
+    error = refused(write("a = 1"))
+    assert isinstance(error, LinkwrightError)
+    assert str(pickle.loads(pickle.dumps(error))) == str(error)
 
 
 def test_a_screw_may_turn_further_than_once(write: Write, minimal_text: str, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,9 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import math
-import os
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -20,14 +17,9 @@ from studies.load import load_study
 from studies.locate import study_path
 from studies.map_options import InvalidOption, MapRequest, map_request
 from studies.map_stage import run_map
+from tests.studies.command_line import linkwright
 
 CORNER = ("--over", "y_mm=200:300", "--over", "z=0.3:0.6")
-
-
-def linkwright(*arguments: object) -> subprocess.CompletedProcess[str]:
-    call = [sys.executable, "-c", "from studies.cli import main; main()", *map(str, arguments)]
-    environment = os.environ | {"COLUMNS": "200", "NO_COLOR": "1"}
-    return subprocess.run(call, capture_output=True, text=True, check=False, env=environment)
 
 
 @pytest.fixture(autouse=True)

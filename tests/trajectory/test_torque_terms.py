@@ -62,13 +62,17 @@ def test_friction_goes_to_the_constant_and_the_linear_part(robot: Heli4, monkeyp
     assert np.abs(found.quadratic - bare.quadratic).max() < 1e-10 * size
 
 
+def assert_repaired_by_the_least_stretch(robot: Heli4, timed: TimedPath, limits: Limits, quantity: str) -> None:
+    mended = repair(robot, timed, limits, 1.0)
+    assert 1.0 - 2 * CLOSE < mended.verification.peak_over_limit[quantity] <= 1.0
+    assert 1.0 < mended.factor < 1.009
+    assert not verify(robot, timed.stretched(mended.factor - CLOSE), limits, 1.0).ok
+
+
 def test_the_rms_torque_is_repaired_by_the_least_stretch(robot: Heli4, timed: TimedPath) -> None:
     limit = verify(robot, timed, FREE, 1.0).rms_torque / np.array([0.9, 1.0, 1.009, 1.005])
     limits = replace(FREE, rms_torque=tuple(limit))
-    mended = repair(robot, timed, limits, 1.0)
-    assert 1.0 - 2 * CLOSE < mended.verification.peak_over_limit["rms torque"] <= 1.0
-    assert 1.0 < mended.factor < 1.009
-    assert not verify(robot, timed.stretched(mended.factor - CLOSE), limits, 1.0).ok
+    assert_repaired_by_the_least_stretch(robot, timed, limits, "rms torque")
 
 
 def test_the_speed_torque_line_is_repaired_by_the_least_stretch(robot: Heli4, timed: TimedPath) -> None:
@@ -76,10 +80,7 @@ def test_the_speed_torque_line_is_repaired_by_the_least_stretch(robot: Heli4, ti
     ratio = verify(robot, timed, line, 1.0).peak_over_limit["torque at speed"]
     k = ratio / 1.009
     limits = replace(FREE, stall_torque=150.0 * k, no_load_speed=25.0 * k)  # every ratio over k
-    mended = repair(robot, timed, limits, 1.0)
-    assert 1.0 - 2 * CLOSE < mended.verification.peak_over_limit["torque at speed"] <= 1.0
-    assert 1.0 < mended.factor < 1.009
-    assert not verify(robot, timed.stretched(mended.factor - CLOSE), limits, 1.0).ok
+    assert_repaired_by_the_least_stretch(robot, timed, limits, "torque at speed")
 
 
 def test_the_line_is_measured_as_it_is_written(robot: Heli4, timed: TimedPath) -> None:

@@ -1,0 +1,70 @@
+"""What is proved or refuted of a region: a margin of a robot is at least a bound."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from design.region import Region
+from kinematics import FviBounds, Mechanism
+from kinematics.errors import InvalidValue
+
+Array = np.ndarray
+_ROUNDING = 1e-12  # by how much plain arithmetic must miss the bound before it refutes, relative to 1 or the bound
+
+
+@dataclass(frozen=True)
+class Statement:
+    """`margin` of `robot` >= `at_least`.
+
+    Attributes:
+        robot: the mechanism with its geometry and ranges.
+        margin: one of `robot.margins`.
+        at_least: the bound, in the margin's unit.
+        bounds, length: what the FVI is measured with; the characteristic length in metres.
+
+    Raises:
+        InvalidValue: no such margin, a bound that is not finite, or a length that is not above 0.
+    """
+
+    robot: Mechanism
+    margin: str
+    at_least: float
+    bounds: FviBounds
+    length: float
+
+    def __post_init__(self) -> None:
+        if self.margin not in self.robot.margins:
+            known = ", ".join(self.robot.margins)
+            raise InvalidValue(f"{type(self.robot).__name__} margin", self.margin, f"one of {known}")
+        if not np.isfinite(self.at_least):
+            raise InvalidValue(f"at_least of {self.margin}", self.at_least, "a finite number, in the margin's unit")
+        if not (np.isfinite(self.length) and self.length > 0.0):
+            raise InvalidValue("characteristic_length", self.length, "a finite length > 0 m")
+
+    @classmethod
+    def of(
+        cls,
+        robot: Mechanism,
+        margin: str,
+        at_least: float,
+        bounds: FviBounds | None = None,
+        characteristic_length: float | None = None,
+    ) -> Statement:
+        """With the robot's own FVI bounds and length where none are given."""
+        length = robot.characteristic_length if characteristic_length is None else characteristic_length
+        return cls(robot, margin, float(at_least), bounds or robot.fvi_bounds, float(length))
+
+    def value(self, poses: Array) -> Array:
+        """(..., n) -> (...,) the margin in plain arithmetic."""
+        return self.robot.margin(self.margin, poses, self.bounds, self.length)
+
+    def refutation(self, region: Region, poses: Array) -> Array | None:
+        """The worst (n,) of the poses (k, n) in the region that miss the bound or have no margin; None: none does."""
+        poses = poses[region.contains(poses, self.robot.pose_names)]
+        if not len(poses):
+            return None
+        values = self.value(poses)
+        below = ~(values >= self.at_least - _ROUNDING * max(1.0, abs(self.at_least)))
+        return poses[int(np.where(below, np.nan_to_num(values, nan=-np.inf), np.inf).argmin())] if below.any() else None

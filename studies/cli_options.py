@@ -1,0 +1,26 @@
+"""Arguments and options that commands share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+StudyArgument = Annotated[
+    str, typer.Argument(metavar="STUDY", help="A study's name (see `linkwright list`), or a path to a study.toml.")
+]
+OutOption = Annotated[
+    Path | None, typer.Option("--out", help="Folder for the results (default: out/ and the study's name).")
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object for machines, and nothing else.")]
+PrototypeOption = Annotated[
+    bool, typer.Option("--prototype", help="Use the study's own geometry, not its committed optimum.")
+]
+FormatOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--format",
+        help="With --out: csv, ros2, cia402, zaber, xps or pmac; once for each. [default: the study's own, or csv]",
+    ),
+]
