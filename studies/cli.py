@@ -233,7 +233,7 @@ def trajectory(
     from kinematics.errors import InvalidValue
     from studies import console
     from studies.outputs import write_setpoints
-    from studies.pipeline import require_on_path, time_cycle
+    from studies.pipeline import require_on_cycle, time_cycle
     from studies.schema_trajectory import LAWS
 
     if law is not None and law not in LAWS:
@@ -251,8 +251,9 @@ def trajectory(
     _require_writable(out)
     with console.progress() as tell:
         tell("cycle")
-        timing = time_cycle(asked.trajectory.model_copy(update={"law": law or asked.trajectory.law}), robot)
-    require_on_path(asked, robot)
+        with_law = asked.trajectory.model_copy(update={"law": law or asked.trajectory.law})
+        timing = time_cycle(asked.model_copy(update={"trajectory": with_law}), robot)
+    require_on_cycle(asked, timing.cycle)
     console.print_timing(timing, write_setpoints(timing, asked.trajectory, out) if out else [], json)
 
 
