@@ -25,6 +25,7 @@ from design.search import worst_poses
 from design.symmetry import Mirrors, mirrors_of
 from kinematics import FviBounds, Mechanism
 from kinematics.errors import InvalidValue
+from kinematics.shown import rounded_down
 
 Array = np.ndarray
 Progress = Callable[[str], None]
@@ -69,7 +70,9 @@ class Certificate:
     mirrors: Mirrors
 
     def __str__(self) -> str:
-        return f"{self.mechanism}: {self.margin} >= {self.at_least:g} {self.status} with {self.boxes} boxes"
+        return (
+            f"{self.mechanism}: {self.margin} >= {rounded_down(self.at_least, 6)} {self.status} with {self.boxes} boxes"
+        )
 
 
 def certify(
@@ -140,12 +143,12 @@ def answer(
 
 def _check(robot: Mechanism, region: Region, margin: str, at_least: float, most_boxes: int) -> None:
     region.check(robot.pose_names)
-    if not np.isfinite(at_least):
-        raise InvalidValue("at_least", at_least, "a finite number")
     if most_boxes < 1:
         raise InvalidValue("most_boxes", most_boxes, "at least 1")
     if margin not in robot.margins:
         raise InvalidValue(f"{type(robot).__name__} margin", margin, f"one of {', '.join(robot.margins)}")
+    if not np.isfinite(at_least):
+        raise InvalidValue(f"at_least of {margin}", at_least, "a finite number, in the margin's unit")
 
 
 def _decide(

@@ -217,7 +217,9 @@ def certify(
 def trajectory(
     study: StudyArgument,
     json: JsonOption = False,
-    out: OutOption = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Folder for the set-points (default: none are written).")
+    ] = None,
     prototype: PrototypeOption = False,
     law: Annotated[
         str | None, typer.Option("--law", help="Timing law, in place of the study's: jerk, toppra or free.")
@@ -314,6 +316,7 @@ def check(
         typer.Argument(metavar="[STUDY ...]", help="Names or paths (default: all that have an optimum)."),
     ] = None,
     json: JsonOption = False,
+    verbose: Annotated[bool, typer.Option("--verbose", help="Show the claims that hold, too.")] = False,
 ) -> None:
     """Verify committed optimum.toml files again, figure by figure; for CI.
 
@@ -330,7 +333,7 @@ def check(
         for name in names:
             tell(f"check {name}")
             found[name] = check_study(_study_file(name))
-    console.print_checks(found, json)
+    console.print_checks(found, json, verbose)
     if not all(row.holds for rows in found.values() for row in rows):
         raise typer.Exit(1)
 
@@ -372,7 +375,7 @@ def _load(given: str, formats: list[str] | None = None) -> Study:
         files = study.trajectory.model_copy(update={"files": tuple(formats)})
         study = study.model_copy(update={"trajectory": files})
     require_cycle_inside(study, _study_file(given))
-    require_drive_files(study, _study_file(given))
+    require_drive_files(study, _study_file(given), formats)
     return study
 
 

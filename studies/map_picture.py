@@ -149,6 +149,6 @@ def _title(outcome: MapOutcome) -> str:
         shown.append(f"worst over {', '.join(worst)}")
     first = f"{type(request.robot).__name__}, {request.index.name}" + (f": {'; '.join(shown)}" if shown else "")
     if figures.area == 0.0:
-        return f"{first}\nno pose keeps the bound"
+        return f"{first}\n{outcome.none_seen}"
     second = f"area {figures.area:.4g} {outcome.area_unit}, mean {figures.mean:.4g}, deviation {figures.deviation:.3g}"
     return f"{first}\n{second}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path as FilePath
 from typing import Any
@@ -106,11 +107,14 @@ def require_cycle_inside(study: Study, file: FilePath) -> None:
 
 def drive_of(drive: schema_trajectory.Drive) -> Drive:
     """Names and encoders of the axes."""
-    return Drive(drive.axes, drive.increments, drive.gear)
+    return Drive(drive.axes, drive.increments, drive.encoder_gear)
 
 
-def require_drive_files(study: Study, file: FilePath) -> None:
+def require_drive_files(study: Study, file: FilePath, asked_for: Sequence[str] | None) -> None:
     """Write the drive files of the cycle's path to nowhere, before hours of work go into the real ones.
+
+    Args:
+        asked_for: formats that the command line has in place of the study's own.
 
     Raises:
         StudyError: a format cannot say what the study asks for.
@@ -125,7 +129,9 @@ def require_drive_files(study: Study, file: FilePath) -> None:
             at_rest = _along(robot, path_of(asked, robot.pose_names), asked.period)
             drive_files("cycle", at_rest, asked.files, drive)
     except InvalidValue as error:
-        problem = read_toml(file).problem(("trajectory", "files"), f"{error.what} {error.found}", error.expected)
+        by = f" for --format {' --format '.join(asked_for)}" if asked_for else ""
+        key = ("trajectory",) if asked_for else ("trajectory", "files")
+        problem = read_toml(file).problem(key, f"{error.what} {error.found}{by}", error.expected)
         raise StudyError([problem]) from error
 
 
