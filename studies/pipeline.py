@@ -203,7 +203,7 @@ def time_cycle(study: Study, robot: Mechanism) -> Timing:
 def _require_inside(region: Region, cycle: Cycle) -> None:
     out = [found for way in cycle.ways if (found := leaving(region, way, cycle.robot.pose_names))]
     if out:
-        room = "room to the region's boundary on the cycle"
+        room = "room to the region's boundary on the cycle [m or rad]"
         raise RequirementFailed([Failed(room, 0.0, found.room, tuple(found.pose.tolist())) for found in out])
 
 

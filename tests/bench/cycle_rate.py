@@ -89,8 +89,8 @@ HEADER = f"""\
 and back) with 1 kg, timed by the jerk-limited law and verified; asked for: {WANTED:g} cycles a second, at most
 {ASKED.tool_acceleration:g} m/s^2 at the tool and an RMS torque of at most 60 % of the peak. The drives
 ({ASKED.speed:g} rad/s, {PEAK:g} N m, {ASKED.jerk:g} rad/s^3) are an assumption of this project. "On the bus" each way
-takes whole milliseconds. A limit is active where a motion comes within 0.5 % of it. Where a law exceeds a limit between its
-knots, the repair stretches time by a factor.
+takes whole milliseconds. A limit is active where a motion comes within 0.5 % of it. Where a law exceeds a limit between
+its knots, the repair stretches time by a factor.
 
 | Heli4 | limits | half cycle [ms] | repair | cycles/s | on the bus | {WANTED:g} a second | RMS / peak | active |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""
