@@ -55,6 +55,14 @@ def test_every_commands_help_has_examples_that_the_command_takes(command: str) -
         parser.make_context(command, example[2:])
 
 
+def test_the_help_of_trajectory_promises_no_files_without_a_folder(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(SMALL)
+    shown = linkwright("trajectory", "--help").stdout
+    assert "none are written" in shown
+    assert linkwright("trajectory", tmp_path, "--prototype", cwd=tmp_path).returncode == 0
+    assert [file.name for file in tmp_path.iterdir()] == ["study.toml"]
+
+
 def test_list_shows_the_mechanisms_and_the_studies() -> None:
     data = json.loads(linkwright("list", "--json").stdout)
     assert "Heli4" in data["mechanisms"]

@@ -140,6 +140,12 @@ def test_what_cannot_be_proved_is_refused_before_anything_runs(asked: Any) -> No
         run_map(asked(), 1e-3, True, lambda _: pytest.fail("ran"))
 
 
+def test_where_no_node_keeps_the_bound_the_grid_s_step_is_said(tmp_path: Path) -> None:
+    done = linkwright("map", "redundant_3t1r", "--at", "theta=0", "--at-least", 99, "--out", tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "no node keeps the bound; they are 0.0012 m and 0.0012 m apart" in done.stdout
+
+
 def test_a_bad_option_exits_with_2_and_writes_nothing(tmp_path: Path) -> None:
     done = linkwright("map", "redundant_3t1r", "--tolerance", 0, "--out", tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
