@@ -26,6 +26,7 @@ from design.statement import Statement
 from design.symmetry import Mirrors, mirrors_of
 from kinematics import FviBounds, Mechanism
 from kinematics.errors import InvalidValue
+from kinematics.shown import rounded_down
 
 Array = np.ndarray
 Progress = Callable[[str], None]
@@ -73,7 +74,9 @@ class Certificate:
         return Statement(robot, self.margin, self.at_least, self.bounds, self.characteristic_length)
 
     def __str__(self) -> str:
-        return f"{self.mechanism}: {self.margin} >= {self.at_least:g} {self.status} with {self.boxes} boxes"
+        return (
+            f"{self.mechanism}: {self.margin} >= {rounded_down(self.at_least, 6)} {self.status} with {self.boxes} boxes"
+        )
 
 
 def certify(

@@ -77,10 +77,12 @@ def certified_cylinder(
         tolerance: of the radius [m].
 
     Raises:
-        InvalidRegion, InvalidValue: see `certify`; or a tolerance not above 0.
+        InvalidRegion, InvalidValue: see `certify`; or a tolerance not above 0 or finer than doubles.
     """
     if not (np.isfinite(tolerance) and tolerance > 0.0):
         raise InvalidValue("tolerance", tolerance, "a finite number > 0")
+    if tolerance < (finest := float(np.spacing(region.radius))):
+        raise InvalidValue("tolerance", tolerance, f"at least {finest:.3g} m, the step between radii of this size")
     started, best, boxes = time.perf_counter(), [], 0
     others = {name: pair for name, pair in region.intervals.items() if name not in ("x", "y")}
     left = np.empty((0, 2, len(robot.pose_names)))

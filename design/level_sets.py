@@ -3,7 +3,7 @@
 The map is taken as linear over the four triangles that each cell makes with its middle; the triangles are cut exactly
 at the bound and at a curved boundary of the region, and integrated exactly. What remains is the error of that
 interpolation, which falls with the square of the step; the grid is refined until no figure moves by more than a
-tolerance.
+tolerance, and, where no node is good, to the finest: no finding says no more than that.
 """
 
 from __future__ import annotations
@@ -67,6 +67,12 @@ class LevelSet:
     coarser: Integrals
 
     @property
+    def step(self) -> tuple[float, float]:
+        """Between nodes along both axes [m or rad]; a part that is narrower may have been missed."""
+        first, second = self.map.first, self.map.second
+        return float(first[1] - first[0]), float(second[1] - second[0])
+
+    @property
     def boundary(self) -> list[Array]:
         """Closed polylines (k, 2) around each part and each hole."""
         return boundary(self.map, self.bound)
@@ -76,6 +82,8 @@ def level_set(
     index: Index, section: Section, names: tuple[str, ...], bound: float | None, tolerance: float = TOLERANCE
 ) -> LevelSet:
     """Map an index on ever finer grids until area, mean and deviation stand still.
+
+    An area of 0 is what the finest grid saw: see `LevelSet.step`.
 
     Args:
         index: of `index_of`.
@@ -101,7 +109,7 @@ def level_set(
         now = integrals(chart, bound)
         if before is not None:
             moved = now.moved(before, whole)
-            if moved <= tolerance:
+            if moved <= tolerance and (now.area > 0.0 or count == FINEST):
                 return LevelSet(chart, bound, now, before)
         before, count = now, 2 * count - 1
     hint = "ask for less, or map `reach` where the edge of reach is the boundary"

@@ -54,8 +54,8 @@ class Region(ABC):
         """k, how many coordinates are free."""
 
     @abstractmethod
-    def contains(self, poses: Array, names: Sequence[str], slack: float = _ROUNDING) -> Array:
-        """(..., n) -> (...,) whether each pose is inside, or outside by no more than the slack [m or rad]."""
+    def room(self, poses: Array, names: Sequence[str]) -> Array:
+        """(..., n) -> (...,) how far each pose is inside the nearest boundary, negative beyond it [m or rad]."""
 
     @abstractmethod
     def narrowed(self, given: Mapping[str, Array]) -> dict[str, tuple[Array | float, Array | float]]:
@@ -68,6 +68,10 @@ class Region(ABC):
     @abstractmethod
     def outline(self) -> list[Array]:
         """Edges of the region's x, y, z part as polylines (k, 3), for drawing."""
+
+    def contains(self, poses: Array, names: Sequence[str], slack: float = _ROUNDING) -> Array:
+        """(..., n) -> (...,) whether each pose is inside, or outside by no more than the slack [m or rad]."""
+        return self.room(poses, names) >= -slack
 
     def check(self, names: Sequence[str]) -> None:
         """Check that the region speaks of exactly these coordinates.
@@ -167,10 +171,10 @@ class Box(Region):
                 pose[..., i] = low
         return pose
 
-    def contains(self, poses: Array, names: Sequence[str], slack: float = _ROUNDING) -> Array:
-        """Each coordinate between its bounds."""
+    def room(self, poses: Array, names: Sequence[str]) -> Array:
+        """To the nearest bound of a coordinate."""
         low, high = np.array([self._intervals[name] for name in names]).T
-        return ((poses >= low - slack) & (poses <= high + slack)).all(axis=-1)
+        return np.minimum(poses - low, high - poses).min(axis=-1)
 
     def narrowed(self, given: Mapping[str, Array]) -> dict[str, tuple[Array | float, Array | float]]:
         """The others' own bounds."""
@@ -233,12 +237,12 @@ class Cylinder(Region):
         rest = product((0.0, 0.5, 1.0), repeat=self._rest.dimension)
         return self.from_unit(np.array([(*d, *r) for r in rest for d in disc]), names)
 
-    def contains(self, poses: Array, names: Sequence[str], slack: float = _ROUNDING) -> Array:
-        """Inside the circle, and the other coordinates between their bounds."""
+    def room(self, poses: Array, names: Sequence[str]) -> Array:
+        """To the circle, or to the nearest bound of another coordinate."""
         x, y = poses[..., names.index("x")], poses[..., names.index("y")]
         others = [name for name in names if name not in ("x", "y")]
-        rest = self._rest.contains(poses[..., [names.index(name) for name in others]], others, slack)
-        return rest & (np.hypot(x, y) <= self.radius + slack)
+        rest = self._rest.room(poses[..., [names.index(name) for name in others]], others)
+        return np.minimum(rest, self.radius - np.hypot(x, y))
 
     def complete(self, given: Mapping[str, Array], unit: Array, names: Sequence[str]) -> Array:
         """Where neither x nor y is given, the first two columns are polar coordinates in the disc."""

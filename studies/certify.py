@@ -14,6 +14,7 @@ from design.search import WorstPoses
 from design.synthesis import Progress
 from kinematics import Mechanism
 from kinematics.errors import InvalidValue, LinkwrightError
+from kinematics.shown import rounded_down
 from studies import setup
 from studies.schema import Study
 
@@ -44,7 +45,7 @@ class Proof:
     @property
     def claim(self) -> str:
         """In words."""
-        return f"{self.certificate.margin} >= {self.certificate.at_least:.7g}"
+        return f"{self.certificate.margin} >= {rounded_down(self.certificate.at_least, 7)}"
 
     @property
     def gap(self) -> float:
@@ -95,6 +96,10 @@ class Question:
             return (Claim(margin, at_least, best=False),)
         return (self._claim(margin),)
 
+    def worst(self, margin: str) -> WorstPoses:
+        """What a dense search finds."""
+        return worst_poses(self.robot, self.region, margin, about=self.study.dense_sample, **self.measure)
+
     def prove(self, claim: Claim, worst: WorstPoses | None, known: Certificate | None, progress: Progress) -> Proof:
         """Answer a claim.
 
@@ -105,7 +110,7 @@ class Question:
         """
         if worst is None:
             progress(f"worst poses of {claim.margin}")
-            worst = worst_poses(self.robot, self.region, claim.margin, about=self.study.dense_sample, **self.measure)
+            worst = self.worst(claim.margin)
         started = time.perf_counter()
         if known is not None and self._stands(known, claim):
             certificate = known

@@ -131,7 +131,9 @@ def certify(
 def trajectory(
     study: StudyArgument,
     json: JsonOption = False,
-    out: OutOption = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Folder for the set-points (default: none are written).")
+    ] = None,
     prototype: PrototypeOption = False,
     law: Annotated[
         str | None, typer.Option("--law", help="Timing law, in place of the study's: jerk, toppra or free.")
@@ -147,7 +149,7 @@ def trajectory(
     from kinematics.errors import InvalidValue
     from studies import console
     from studies.outputs import write_setpoints
-    from studies.pipeline import require_on_path, time_cycle
+    from studies.pipeline import require_on_cycle, time_cycle
     from studies.schema_trajectory import LAWS
 
     if law is not None and law not in LAWS:
@@ -165,8 +167,9 @@ def trajectory(
     require_writable_folders(out)
     with console.progress() as tell:
         tell("cycle")
-        timing = time_cycle(asked.trajectory.model_copy(update={"law": law or asked.trajectory.law}), robot)
-    require_on_path(asked, robot)
+        with_law = asked.trajectory.model_copy(update={"law": law or asked.trajectory.law})
+        timing = time_cycle(asked.model_copy(update={"trajectory": with_law}), robot)
+    require_on_cycle(asked, timing.cycle)
     console.print_timing(timing, write_setpoints(timing, asked.trajectory, out) if out else [], json)
 
 
@@ -227,6 +230,7 @@ def check(
         typer.Argument(metavar="[STUDY ...]", help="Names or paths (default: all that have an optimum)."),
     ] = None,
     json: JsonOption = False,
+    verbose: Annotated[bool, typer.Option("--verbose", help="Show the claims that hold, too.")] = False,
 ) -> None:
     """Verify committed optimum.toml files again, figure by figure; for CI.
 
@@ -243,7 +247,7 @@ def check(
         for name in names:
             tell(f"check {name}")
             found[name] = check_study(study_file(name))
-    console.print_checks(found, json)
+    console.print_checks(found, json, verbose)
     if not all(row.holds for rows in found.values() for row in rows):
         raise typer.Exit(1)
 

@@ -27,7 +27,7 @@ def load(given: str, formats: list[str] | None = None) -> Study:
         files = study.trajectory.model_copy(update={"files": tuple(formats)})
         study = study.model_copy(update={"trajectory": files})
     require_cycle_inside(study, study_file(given))
-    require_drive_files(study, study_file(given))
+    require_drive_files(study, study_file(given), formats)
     return study
 
 

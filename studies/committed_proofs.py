@@ -9,11 +9,11 @@ from typing import Any
 
 from design import Certificate, certificate_bytes, load_certificate
 from kinematics.errors import LinkwrightError
+from kinematics.shown import rounded_down
 from studies.certify import Claim, Proof, Question
 from studies.rows import Row, same, same_digest
 
 WORTH = 0.5  # of the lowest value found: a best bound below this says next to nothing
-
 FOLDER = "certificates"
 
 
@@ -60,7 +60,7 @@ def proof_rows(
 
     Args:
         entries: the optimum's, by margin.
-        worst: what a dense search found, by margin; a proof above it would be false.
+        worst: what a dense search found, by margin, as far as it is known; a proof above it would be false.
 
     Raises:
         UnreadableCertificate: a file is missing or cannot be read.
@@ -94,18 +94,18 @@ def _replayed(
     certificate = load_certificate(path)
     expected = _entry(certificate, 0) | {"status": "proved", "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
     rows = _entry_rows(claim.margin, entry, expected)
-    what = f"{claim.margin} >= {certificate.at_least:.7g} everywhere"
+    what = f"{claim.margin} >= {rounded_down(certificate.at_least, 7)} everywhere"
     try:
         boxes = question.replay(certificate, claim)
     except LinkwrightError as error:
         return [*rows, _off(what, "proved", str(error))]
     if not _proved(certificate):
         return [*rows, _off(what, "proved", certificate.status)]
-    lowest = worst.get(claim.margin, certificate.at_least)
+    lowest = worst[claim.margin] if claim.margin in worst else question.worst(claim.margin).value
     rows.append(Row(what, "proved", f"{boxes} boxes replayed", lowest - certificate.at_least))
     if claim.at_least is None:  # nothing is required: a best bound, which must be worth its name
         says = f"a bound above {WORTH:g} of the lowest found, {lowest:.6g}"
-        found, above = f"{certificate.at_least:.6g}", certificate.at_least - WORTH * lowest
+        found, above = rounded_down(certificate.at_least, 6), certificate.at_least - WORTH * lowest
         rows.append(Row(f"{claim.margin}, best bound", says, found, above))
     return rows
 

@@ -163,8 +163,8 @@ def print_proofs(question: Question, proofs: Sequence[Proof], files: list[Path],
     print_files(files)
 
 
-def print_checks(found: dict[str, list[Row]], as_json: bool) -> None:
-    """Each claim of each study."""
+def print_checks(found: dict[str, list[Row]], as_json: bool, verbose: bool) -> None:
+    """A line for each study, and the claims that fail; all of them for machines, and where asked."""
     if as_json:
         data = {name: [{**vars(row), "holds": row.holds} for row in rows] for name, rows in found.items()}
         holds = all(row.holds for rows in found.values() for row in rows)
@@ -172,10 +172,14 @@ def print_checks(found: dict[str, list[Row]], as_json: bool) -> None:
         return
     for name, rows in found.items():
         failed = sum(not row.holds for row in rows)
-        verdict = "all holds" if failed == 0 else f"{failed} of {len(rows)} FAIL"
+        verdict = f"all holds, {len(rows)} claims" if failed == 0 else f"{failed} of {len(rows)} claims FAIL"
+        if not (failed or verbose):
+            print(f"{name}: {verdict}")
+            continue
         table = [
             ("ok" if row.holds else "FAIL", row.what, row.expected, row.found, f"{row.margin:.3g}", row.where)
             for row in rows
+            if verbose or not row.holds
         ]
         print_table(f"{name}: {verdict}", ("", "claim", "expected", "found", "margin", "at pose"), table)
 

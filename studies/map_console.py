@@ -30,6 +30,8 @@ def print_map(outcome: MapOutcome, files: list[Path], as_json: bool) -> None:
             shown_pose(outcome.found.map.lowest[1]),
         ),
     ]
+    if figures["area"] == 0.0:
+        rows.insert(0, ("seen", outcome.none_seen, "", ""))
     rest = request.section.rest(request.robot.pose_names)
     title = f"{bound_label(outcome)}; {request.section}" + (f"; worst over {', '.join(rest)}" if rest else "")
     print_table(title, ("figure", "value", "moved last by", "at pose"), rows)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -22,12 +23,13 @@ from studies.map_stage import MapOutcome
 from studies.plots import STYLE, png
 
 Array = np.ndarray
-BOUND, PROVED, OPEN = "#d1495b", "#ffffff", "#111111"
+BOUND, OPEN = "#d1495b", "#111111"
+PROVED: Any = {"facecolor": "none", "edgecolor": "#333333", "hatch": "////", "linewidth": 0.25}
 _LEVELS = 14
 
 
 def map_picture(outcome: MapOutcome) -> bytes:
-    """One panel: filled contours, the bound in red, the certified region in white, open boxes in black."""
+    """One panel: filled contours, the bound in red, the certified region hatched, open boxes in black."""
     request, chart = outcome.request, outcome.found.map
     with mpl.rc_context(STYLE):
         angles = angles_of(request.robot)
@@ -108,8 +110,8 @@ def draw_cells(axes: Axes, cells: Array, scale: Array, label: str) -> Patch:
     """Proved cells (k, 2, 2), hatched; the handle for a legend."""
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
     polygons = [scale * np.take_along_axis(cell, corners, axis=0) for cell in cells]
-    axes.add_collection(PolyCollection(polygons, facecolors=(1, 1, 1, 0.25), edgecolors=PROVED, linewidths=0.4))
-    return Patch(facecolor="#cccccc", edgecolor="#777777", label=label)
+    axes.add_collection(PolyCollection(polygons, **PROVED))
+    return Patch(**PROVED, label=label)
 
 
 def _draw_certified(axes: Axes, outcome: MapOutcome, scale: Array) -> list[Patch | Line2D]:
@@ -121,12 +123,11 @@ def _draw_certified(axes: Axes, outcome: MapOutcome, scale: Array) -> list[Patch
     elif proof.radius > 0.0:
         label = f"proved, radius {proof.radius:.3f} m"
         if set(plane) == {"x", "y"}:
-            axes.add_patch(Circle((0, 0), proof.radius, fill=False, edgecolor=PROVED, linewidth=1.6, linestyle="--"))
+            axes.add_patch(Circle((0, 0), proof.radius, **PROVED))
         for k, name in enumerate(plane):
             if name in ("x", "y") and len(set(plane) & {"x", "y"}) == 1:
-                for side in (-proof.radius, proof.radius):
-                    (axes.axvline, axes.axhline)[k](side, color=PROVED, linewidth=1.6, linestyle="--")
-        handles.append(Patch(facecolor="#888888", edgecolor=PROVED, linewidth=1.6, linestyle="--", label=label))
+                (axes.axvspan, axes.axhspan)[k](-proof.radius, proof.radius, **PROVED)
+        handles.append(Patch(**PROVED, label=label))
     if len(proof.left):
         columns = [outcome.request.robot.pose_names.index(name) for name in plane]
         corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
@@ -148,6 +149,6 @@ def _title(outcome: MapOutcome) -> str:
         shown.append(f"worst over {', '.join(worst)}")
     first = f"{type(request.robot).__name__}, {request.index.name}" + (f": {'; '.join(shown)}" if shown else "")
     if figures.area == 0.0:
-        return f"{first}\nno pose keeps the bound"
+        return f"{first}\n{outcome.none_seen}"
     second = f"area {figures.area:.4g} {outcome.area_unit}, mean {figures.mean:.4g}, deviation {figures.deviation:.3g}"
     return f"{first}\n{second}"

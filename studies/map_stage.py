@@ -40,6 +40,13 @@ class MapOutcome:
             return self.certified.area(axes)
         return float(np.pi * self.certified.radius**2) if set(axes) == {"x", "y"} else None
 
+    @property
+    def none_seen(self) -> str:
+        """What an area of 0 says, in words."""
+        axes, steps = self.request.section.axes, self.found.step
+        apart = " and ".join(f"{v:.2g} {unit_of(self.request, n)}" for n, v in zip(axes, steps, strict=True))
+        return f"no node keeps the bound; they are {apart} apart, a narrower part would be missed"
+
     def header(self) -> dict[str, Any]:
         """What made the numbers, as plain data."""
         r = self.request
@@ -65,6 +72,7 @@ class MapOutcome:
             "area": now.area,
             "mean": now.mean,
             "deviation": now.deviation,
+            "step": list(self.found.step),
             "moved": {name: abs(getattr(now, name) - getattr(before, name)) for name in vars(now)},
             "worst": value,
             "worst_pose": pose.tolist(),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -19,9 +19,10 @@ from kinematics import Mechanism
 from studies import setup
 from studies.certify import Proof, Question, prove_all
 from studies.errors import Failed, RequirementFailed
+from studies.inside import leaving
 from studies.schema import Study
-from studies.schema_trajectory import Trajectory
 from trajectory import Cycle, Move, Setpoints, cycle_setpoints, lower_bound, there_and_back
+from trajectory.path_certificate import Way
 
 
 @dataclass(frozen=True)
@@ -75,7 +76,7 @@ class Outcome:
         synthesis: how it was found; None where the geometry was given.
         worst: the worst pose of each margin, by its name.
         prototype: the same for the prototype, where a synthesis changed it.
-        on_cycle: the worst value of each requirement's margin on the cycle's path; empty without a cycle.
+        on_cycle: the worst value of each requirement's margin on the cycle; empty without one.
         timing: the cycle; None where the study asks for none.
         prototype_timing: the prototype's cycle, to compare with.
         proofs: what was tried to prove of every pose; empty before that stage.
@@ -112,7 +113,7 @@ class Outcome:
         return {**self.timing.figures(), "worst_on_the_path": self.on_cycle}
 
     def require_all(self) -> None:
-        """Check every requirement, over the region and on the cycle's path, and that no claim is refuted.
+        """Check every requirement, over the region and on the cycle, and that no claim is refuted.
 
         Raises:
             RequirementFailed: with each one that fails.
@@ -145,10 +146,9 @@ def optimise(study: Study, progress: Progress) -> Synthesis:
     )
 
 
-def margins_on_path(problem: Problem, robot: Mechanism, asked: Trajectory) -> dict[str, float]:
-    """The worst value of each requirement's margin on the cycle's path; NaN counts as -inf."""
-    path = setup.path_of(asked, robot.pose_names)
-    (poses,) = path.evaluate(np.linspace(0.0, path.length, asked.grid + 1), 0)
+def margins_on(problem: Problem, robot: Mechanism, ways: Sequence[Way], grid: int) -> dict[str, float]:
+    """The worst value of each requirement's margin on what a cycle travels; NaN counts as -inf."""
+    poses = np.concatenate([way.evaluate(np.linspace(0.0, way.length, grid + 1), 0)[0] for way in ways])
     found = {}
     for requirement in problem.requirements:
         values = robot.margin(requirement.margin, poses, problem.fvi_bounds, problem.characteristic_length)
@@ -156,15 +156,15 @@ def margins_on_path(problem: Problem, robot: Mechanism, asked: Trajectory) -> di
     return found
 
 
-def require_on_path(study: Study, robot: Mechanism) -> None:
-    """Check the study's requirements on its cycle's path.
+def require_on_cycle(study: Study, cycle: Cycle) -> None:
+    """Check the study's requirements on its cycle.
 
     Raises:
         RequirementFailed: with each one that fails there.
     """
     assert study.trajectory is not None
     problem = setup.problem_of(study)
-    found = margins_on_path(problem, robot, study.trajectory)
+    found = margins_on(problem, cycle.robot, cycle.ways, study.trajectory.grid)
     failed = [
         Failed(f"{r.margin} on the cycle", r.at_least, found[r.margin], ())
         for r in problem.requirements
@@ -174,15 +174,21 @@ def require_on_path(study: Study, robot: Mechanism) -> None:
         raise RequirementFailed(failed)
 
 
-def time_cycle(asked: Trajectory, robot: Mechanism) -> Timing:
-    """Time, verify and sample the study's cycle on a robot."""
+def time_cycle(study: Study, robot: Mechanism) -> Timing:
+    """Time, verify and sample the study's cycle on a robot.
+
+    Raises:
+        RequirementFailed: the cycle leaves the study's region; and what the timing law and the verification raise.
+    """
     from trajectory.moves import plan_move
 
+    asked = study.trajectory
+    assert asked is not None
     started = time.perf_counter()
     path, limits, payload = setup.path_of(asked, robot.pose_names), setup.limits_of(asked.limits), asked.payload
-
-    timing, cannot_keep = setup.timing_of(asked)
+    timing, cannot_keep = setup.timing_of(study)
     cycle = there_and_back(robot, path, limits, payload, timing, asked.payload_back, cannot_keep)
+    _require_inside(setup.region_of(study), cycle)
     seconds = time.perf_counter() - started
     points = cycle_setpoints(cycle, asked.period, robot.actuator_units)
     approach = None
@@ -192,6 +198,13 @@ def time_cycle(asked: Trajectory, robot: Mechanism) -> Timing:
         approach = plan_move(robot, home, points.pose[0], gentle, payload, asked.period, units)
     bound = sum(lower_bound(robot, piece.path, limits, payload) for piece in cycle.there)
     return Timing(cycle, points, approach, bound, seconds)
+
+
+def _require_inside(region: Region, cycle: Cycle) -> None:
+    out = [found for way in cycle.ways if (found := leaving(region, way, cycle.robot.pose_names))]
+    if out:
+        room = "room to the region's boundary on the cycle [m or rad]"
+        raise RequirementFailed([Failed(room, 0.0, found.room, tuple(found.pose.tolist())) for found in out])
 
 
 def run(study: Study, robot: Mechanism | None, progress: Progress, compare_cycles: bool = True) -> Outcome:
@@ -215,10 +228,10 @@ def run(study: Study, robot: Mechanism | None, progress: Progress, compare_cycle
     on_cycle: dict[str, float] = {}
     if study.trajectory is not None:
         progress("cycle")
-        on_cycle = margins_on_path(problem, robot, study.trajectory)
-        timing = time_cycle(study.trajectory, robot)
+        timing = time_cycle(study, robot)
+        on_cycle = margins_on(problem, robot, timing.cycle.ways, study.trajectory.grid)
         if before is not None and compare_cycles:
-            prototype_timing = time_cycle(study.trajectory, problem.robot)
+            prototype_timing = time_cycle(study, problem.robot)
     return Outcome(study, problem, region, robot, synthesis, worst, before, on_cycle, timing, prototype_timing)
 
 

@@ -33,6 +33,7 @@ STYLE: Any = {
     "axes.grid": True,
     "grid.alpha": 0.25,
     "grid.linewidth": 0.6,
+    "hatch.linewidth": 0.4,
 }
 
 

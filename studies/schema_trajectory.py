@@ -60,11 +60,11 @@ class Drive(Model):
     axes: Annotated[Annotated[tuple[Name, ...], Field(min_length=1)] | None, Key("a list of names, one a joint")] = None
     increments: Annotated[
         Increments | Annotated[tuple[Increments, ...], Field(min_length=1)] | None,
-        Key("a whole number > 0, or one a joint (encoder increments in a turn of the motor, or in a metre on a rail)"),
+        Key("a whole number > 0, or one a joint (in a turn of the encoder, or in a metre on a rail)"),
     ] = None
-    gear: Annotated[
+    encoder_gear: Annotated[
         float | Annotated[tuple[float, ...], Field(min_length=1)],
-        Key("a number other than 0, or one a joint (turns of the motor for one of the joint)"),
+        Key("a number other than 0, or one a joint (turns of the encoder for one of the joint)"),
     ] = 1.0
 
 

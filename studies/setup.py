@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path as FilePath
 from typing import Any
@@ -16,12 +18,14 @@ from kinematics.geometry import GeometryRecord
 from studies import schema_path, schema_trajectory
 from studies.errors import StudyError
 from studies.hardware import inertia_of, ranges_of
+from studies.inside import leaving
 from studies.mechanisms import mechanism_class
 from studies.schema import CylinderRegion, Study
 from studies.toml_file import read_toml
 from trajectory import Limits, Path, RoundedPath, Setpoints
 from trajectory.cycle import Timing
 from trajectory.drive_files import Drive, drive_files
+from trajectory.pose_bounds import PoseBounds
 
 OBJECTIVE = "fvi"
 
@@ -84,7 +88,7 @@ def path_of(asked: schema_trajectory.Trajectory, pose_names: tuple[str, ...]) ->
 
 
 def require_cycle_inside(study: Study, file: FilePath) -> None:
-    """Check that the cycle stays where the geometry is verified.
+    """Prove that the cycle's path stays where the geometry is verified.
 
     Raises:
         StudyError: it leaves the region, with the pose at which it does.
@@ -93,10 +97,8 @@ def require_cycle_inside(study: Study, file: FilePath) -> None:
         return
     names = mechanism_class(study.mechanism).pose_names
     path = path_of(study.trajectory, names)
-    (poses,) = path.evaluate(np.linspace(0.0, path.length, 501), 0)
-    inside = region_of(study).contains(poses, names, slack=1e-9)
-    if not inside.all():
-        pose = ", ".join(f"{v:.4g}" for v in poses[int(np.argmin(inside))])
+    if (found := leaving(region_of(study), path, names)) is not None:
+        pose = ", ".join(f"{v:.4g}" for v in found.pose)
         key = "path" if study.trajectory.cycle is None else "cycle"
         expected = f"a {key} inside the region, {region_of(study)}"
         problem = read_toml(file).problem(("trajectory", key), f"the pose ({pose}) on it", expected)
@@ -105,11 +107,14 @@ def require_cycle_inside(study: Study, file: FilePath) -> None:
 
 def drive_of(drive: schema_trajectory.Drive) -> Drive:
     """Names and encoders of the axes."""
-    return Drive(drive.axes, drive.increments, drive.gear)
+    return Drive(drive.axes, drive.increments, drive.encoder_gear)
 
 
-def require_drive_files(study: Study, file: FilePath) -> None:
+def require_drive_files(study: Study, file: FilePath, asked_for: Sequence[str] | None) -> None:
     """Write the drive files of the cycle's path to nowhere, before hours of work go into the real ones.
+
+    Args:
+        asked_for: formats that the command line has in place of the study's own.
 
     Raises:
         StudyError: a format cannot say what the study asks for.
@@ -124,7 +129,9 @@ def require_drive_files(study: Study, file: FilePath) -> None:
             at_rest = _along(robot, path_of(asked, robot.pose_names), asked.period)
             drive_files("cycle", at_rest, asked.files, drive)
     except InvalidValue as error:
-        problem = read_toml(file).problem(("trajectory", "files"), f"{error.what} {error.found}", error.expected)
+        by = f" for --format {' --format '.join(asked_for)}" if asked_for else ""
+        key = ("trajectory",) if asked_for else ("trajectory", "files")
+        problem = read_toml(file).problem(key, f"{error.what} {error.found}{by}", error.expected)
         raise StudyError([problem]) from error
 
 
@@ -142,11 +149,13 @@ def limits_of(limits: schema_trajectory.Limits) -> Limits:
     return Limits(**limits.model_dump())
 
 
-def timing_of(asked: schema_trajectory.Trajectory) -> tuple[Timing, tuple[str, ...]]:
+def timing_of(study: Study) -> tuple[Timing, tuple[str, ...]]:
     """The study's timing law, and the limits that it is run without although the study may set them.
 
     Only jerk: it makes a motion smooth, while what else a law cannot keep rates the drives, and is refused.
     """
+    asked = study.trajectory
+    assert asked is not None
     if asked.law == "toppra":
         from trajectory.toppra_law import time_optimal
 
@@ -154,10 +163,17 @@ def timing_of(asked: schema_trajectory.Trajectory) -> tuple[Timing, tuple[str, .
     if asked.law == "free":
         from trajectory.free_law import free_motion
 
-        return free_motion, ()
+        return partial(free_motion, within=_pose_bounds(study)), ()
     from trajectory.jerk_law import jerk_limited
 
     return jerk_limited, ()
+
+
+def _pose_bounds(study: Study) -> PoseBounds:
+    """The region, as the free law takes it."""
+    region = region_of(study)
+    low, high = zip(*(region.intervals[name] for name in mechanism_class(study.mechanism).pose_names), strict=True)
+    return PoseBounds(low, high, region.radius if isinstance(region, Cylinder) else math.inf)
 
 
 def approach_limits(asked: schema_trajectory.Approach, drives: Limits, joints: int) -> Limits:

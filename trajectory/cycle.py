@@ -16,7 +16,7 @@ from kinematics import InvalidValue, Mechanism
 from trajectory.errors import LimitsExceeded
 from trajectory.limits import Limits
 from trajectory.path import Path, Reversed
-from trajectory.path_certificate import PathCertificate, certify_path, worst_of
+from trajectory.path_certificate import PathCertificate, Way, certify_path, worst_of
 from trajectory.pose_spline import InTime, PoseSpline
 from trajectory.repair import Repaired, repair
 from trajectory.timed import TimedMotion
@@ -74,6 +74,12 @@ class Cycle:
     def pieces(self) -> tuple[Piece, ...]:
         """Of both ways, in order."""
         return (*self.there, *self.back)
+
+    @property
+    def ways(self) -> tuple[Way, ...]:
+        """What the poses pass: the path, or the pieces' own motions where these left it."""
+        own = tuple(InTime(p.motion, self.path.pose_names) for p in self.pieces if isinstance(p.motion, PoseSpline))
+        return own or (self.path,)
 
     @property
     def duration(self) -> float:
@@ -151,10 +157,10 @@ def there_and_back(
 
     there = timed(path, payload)
     back = () if is_closed(path) else timed(Reversed(path), payload if payload_back is None else payload_back)
-    own = [InTime(p.motion, path.pose_names) for p in (*there, *back) if isinstance(p.motion, PoseSpline)]
-    if own:  # not the path was travelled
-        certificate = worst_of([certify_path(robot, way) for way in own])
-    return Cycle(robot, limits, path, certificate, there, back, left_out)
+    cycle = Cycle(robot, limits, path, certificate, there, back, left_out)
+    if cycle.ways != (path,):
+        return replace(cycle, certificate=worst_of([certify_path(robot, way) for way in cycle.ways]))
+    return cycle
 
 
 def is_closed(path: Path) -> bool:

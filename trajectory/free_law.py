@@ -22,6 +22,7 @@ from trajectory.errors import TimingFailed
 from trajectory.interval_nlp import IntervalConstraints, IntervalProgram
 from trajectory.limits import Limits
 from trajectory.path import Array, Path, places, require_poses_of
+from trajectory.pose_bounds import PoseBounds, bezier_points
 from trajectory.pose_spline import PoseSpline
 from trajectory.toppra_law import time_optimal
 
@@ -32,7 +33,14 @@ _SLOWER = 1.1  # the guess, over the time-optimal law
 _ROOM = 0.25  # of the path's extent, by which the pose may leave the path's box
 
 
-def free_motion(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = 60) -> PoseSpline:
+def free_motion(
+    robot: Mechanism,
+    path: Path,
+    limits: Limits,
+    payload: float,
+    intervals: int = 60,
+    within: PoseBounds | None = None,
+) -> PoseSpline:
     """The fastest jerk-limited motion from a cycle's one end to the other, outside its arch.
 
     Args:
@@ -41,6 +49,7 @@ def free_motion(robot: Mechanism, path: Path, limits: Limits, payload: float, in
         limits: of joints and tool, with jerk; all are kept.
         payload: mass at the tool [kg].
         intervals: of equal time.
+        within: what every pose stays in, at every instant; anywhere about the path when None.
 
     Raises:
         InvalidValue: another kind of path or pose, or no limit of jerk.
@@ -50,11 +59,15 @@ def free_motion(robot: Mechanism, path: Path, limits: Limits, payload: float, in
     if limits.jerk is None:
         raise InvalidValue("Limits jerk for the free law", None, "a limit: it keeps the jerk")
     arch = Arch.of(path)
-    program = _program(robot, arch, limits, payload, intervals)
+    program = _program(robot, arch, limits, payload, intervals, within)
     guess, end, duration = _guess(robot, path, limits, payload, intervals)
     pose = guess[:, : len(robot.pose_names)]
     room = _ROOM * np.ptp(pose, axis=0) + _ROOM * np.ptp(pose[:, : places(path.pose_names)], axis=0).max()
-    answer = program.solve(guess, end, pose.min(axis=0) - room, pose.max(axis=0) + room, duration)
+    low, high = pose.min(axis=0) - room, pose.max(axis=0) + room
+    if within is not None:
+        least, most = within.box()
+        low, high = np.maximum(low, least), np.minimum(high, most)
+    answer = program.solve(guess, end, low, high, duration)
     if answer.status != "Solve_Succeeded":
         asked = {**limits.as_dict(), "payload": payload, "intervals": intervals, "path": path.as_dict()}
         raise TimingFailed("free", asked, f"IPOPT ended with {answer.status}")
@@ -93,11 +106,15 @@ def _guess(robot: Mechanism, path: Path, limits: Limits, payload: float, interva
 
 
 @lru_cache(maxsize=4)
-def _program(robot: Mechanism, arch: Arch, limits: Limits, payload: float, intervals: int) -> IntervalProgram:
-    return IntervalProgram(_constraints(robot, arch, limits, payload, intervals), intervals)
+def _program(
+    robot: Mechanism, arch: Arch, limits: Limits, payload: float, intervals: int, within: PoseBounds | None
+) -> IntervalProgram:
+    return IntervalProgram(_constraints(robot, arch, limits, payload, intervals, within), intervals)
 
 
-def _constraints(robot: Mechanism, arch: Arch, limits: Limits, payload: float, intervals: int) -> IntervalConstraints:
+def _constraints(
+    robot: Mechanism, arch: Arch, limits: Limits, payload: float, intervals: int, within: PoseBounds | None
+) -> IntervalConstraints:
     n = len(robot.pose_names)
     start, duration = ca.SX.sym("start", 4 * n), ca.SX.sym("duration")
     limited, jerk, squares = _limited(robot, limits, payload)
@@ -106,10 +123,10 @@ def _constraints(robot: Mechanism, arch: Arch, limits: Limits, payload: float, i
     low: list[float] = []
     high: list[float] = []
 
-    def add(expression: ca.SX, least: float, most: float) -> None:
+    def add(expression: ca.SX, least: float | Array, most: float | Array) -> None:
         rows.append(expression)
-        low.extend([least] * expression.numel())
-        high.extend([most] * expression.numel())
+        low.extend(np.broadcast_to(least, expression.numel()).tolist())
+        high.extend(np.broadcast_to(most, expression.numel()).tolist())
 
     for share in (*_AT, 1.0):
         state = _within(start, share / intervals, n)
@@ -125,6 +142,8 @@ def _constraints(robot: Mechanism, arch: Arch, limits: Limits, payload: float, i
         *sides, floor = arch.sides(pose[0], pose[1], pose[2])
         add(arch.outside(*sides), 1.0, np.inf)
         add(floor, 0.0, np.inf)
+    if within is not None:
+        add(*within.rows(bezier_points(ca.vertsplit(start, n), 1.0 / intervals)))
     return IntervalConstraints(start, duration, ca.vertcat(*rows), np.array(low), np.array(high), mean)
 
 

@@ -24,6 +24,7 @@ from kinematics.interval import enclose
 from kinematics.linear import determinant, volume
 from kinematics.program import Program
 from kinematics.rods import RodLevel
+from kinematics.shown import rounded_down
 from trajectory.errors import PathRefused
 from trajectory.path import Array, Path, PathBox, require_poses_of
 from trajectory.pose_spline import InTime
@@ -53,7 +54,7 @@ class PathCertificate:
 
     def rows(self) -> list[tuple[str, str]]:
         """Each margin and its bound, rounded down, for people."""
-        return [(name, f"{(1.0 - 5e-4) * bound:.4g}") for name, bound in self.margins.items()]
+        return [(name, rounded_down(bound, 4)) for name, bound in self.margins.items()]
 
 
 def certify_path(robot: Mechanism, path: Way) -> PathCertificate:

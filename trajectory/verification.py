@@ -17,6 +17,7 @@ import numpy as np
 
 from kinematics import Mechanism
 from kinematics.drives import from_actuators
+from kinematics.shown import rounded_up
 from trajectory.limits import Limits
 from trajectory.motion import Motion, PoseMotion, motion_of
 from trajectory.path import Array
@@ -112,7 +113,7 @@ class Verification:
             return "" if value is None else f"{value:.6g}"
 
         def row(p: Peak) -> tuple[str, ...]:
-            proved = number(self.proved.get(p.quantity))
+            proved = "" if (most := self.proved.get(p.quantity)) is None else rounded_up(most, 6)
             return (
                 p.quantity,
                 number(p.value),

@@ -11,6 +11,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from kinematics.shown import rounded_down
 from tests.bench import certificates, trajectory_peers
 from tests.bench.page import ROOT, write_between
 
@@ -102,7 +103,7 @@ def _bulk_rows(median: dict[str, float], count: int) -> list[str]:
 def _run_table(run: dict[str, Any]) -> str:
     """The study's answer as Markdown."""
     lines = [f"| worst over `{run['region']}` | prototype | optimum | of the optimum |", "| --- | --- | --- | --- |"]
-    proofs = {p["margin"]: f"{p['status']} >= {p['at_least']:.6g}" for p in run["proofs"]}
+    proofs = {p["margin"]: f"{p['status']} >= {rounded_down(p['at_least'], 6)}" for p in run["proofs"]}
     lines += [
         f"| {name} | {run['prototype'][name]:.4f} | {worst['value']:.4f} | {proofs.get(name, '')} |"
         for name, worst in run["worst"].items()

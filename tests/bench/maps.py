@@ -70,7 +70,7 @@ def lowest_between() -> tuple[float, np.ndarray]:
 
 def _write(name: str, panels: list[tuple[str, str]], found: dict[str, LevelSet], proof: CertifiedRegion | None) -> None:
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 4.6), layout="constrained")
+        figure = Figure(figsize=(5.4, 4.6), layout="compressed")
         for axes, (case, what) in zip(figure.subplots(1, len(panels), sharey=True), panels, strict=True):
             handles = _panel(figure, axes, case, what, found, proof)
             axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.12), frameon=False, fontsize=7)
@@ -95,7 +95,7 @@ def _write_between(found: dict[str, LevelSet], pose: np.ndarray) -> None:
     """The set that nine angles miss, near its worst pose, and the FVI of that pose over the angle."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.4, 3.6), layout="constrained")
-        left, right = figure.subplots(1, 2, width_ratios=(1, 1.6))
+        left, right = figure.subplots(1, 2, width_ratios=(1, 2))
         for ring in found["nine angles"].boundary:
             left.fill(*ring.T, color=BETWEEN, label=">= 1 at nine angles, < 1 between")
         for ring in found["every angle"].boundary:
@@ -103,6 +103,8 @@ def _write_between(found: dict[str, LevelSet], pose: np.ndarray) -> None:
         left.plot(*pose[1:3], "o", color="k", markersize=4, label="lowest of the set")
         left.set(title="near the worst pose", xlim=(pose[1] - 0.02, 0.32), ylim=(pose[2] - 0.03, pose[2] + 0.06))
         label_axes(left, PLANE, ())
+        left.set_aspect("auto")
+        left.locator_params(axis="x", nbins=4)
         left.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), frameon=False, fontsize=7)
         angles = np.linspace(-math.pi / 2, math.pi / 2, 721)
         for at, style in ((angles, "-"), (np.array(NINE), "o")):
@@ -112,7 +114,7 @@ def _write_between(found: dict[str, LevelSet], pose: np.ndarray) -> None:
         right.axhline(1.0, color="#d1495b", linewidth=1.0)
         right.set(title=f"at y = {pose[1]:.4f} m, z = {pose[2]:.4f} m", xlabel="theta [deg]", ylabel="FVI")
         dip = math.degrees(pose[3])
-        right.set(xlim=(dip - 30.0, dip + 30.0), ylim=(0.995, 1.025))
+        right.set(xlim=(dip - 28.0, dip + 28.0), ylim=(0.995, 1.025))
         right.legend(frameon=False)
         (DOCS / "map_between_angles.png").write_bytes(png(figure))
 

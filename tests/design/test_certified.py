@@ -96,6 +96,14 @@ def test_a_region_that_holds_as_a_whole_is_its_own_largest() -> None:
     assert math.isclose(cells.area(AXES), 0.01)
 
 
+def test_a_tolerance_finer_than_the_step_between_doubles_is_refused_and_that_step_is_reached() -> None:
+    robot, finest = Heli4(), float(np.spacing(0.6))
+    with pytest.raises(InvalidValue, match=r"tolerance: found .* at least 1\.11e-16 m"):
+        certified_cylinder(robot, SLIM, "internal_determinant", at_least=0.45, tolerance=0.5 * finest)
+    found = certified_cylinder(robot, SLIM, "reach", at_least=9.0, tolerance=finest)
+    assert found.radius == 0.0
+
+
 def test_what_has_no_such_family_is_refused() -> None:
     with pytest.raises(InvalidSection, match="Box"):
         certified_cells(Heli4(), SLIM, ("x", "y"), "fvi", at_least=1.0)

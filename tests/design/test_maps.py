@@ -24,7 +24,7 @@ from design import (
     worst_poses,
 )
 from design.index import Index
-from design.level_sets import boundary, integrals
+from design.level_sets import FINEST, boundary, integrals
 from design.region import Region
 from kinematics import Heli4, Peppermill, Redundant3T1R
 from kinematics.errors import InvalidValue
@@ -205,8 +205,23 @@ def test_no_part_above_the_bound_has_no_mean() -> None:
     assert boundary(chart, 3.0) == []
 
 
+def test_a_part_between_the_nodes_of_the_coarse_grids_is_found() -> None:
+    """A cap in the middle of a cell of the second grid, a third of the cell wide."""
+    x, y = 2.0 / 64 * 10.5, 2.0 / 64 * 20.5
+    cap = made(lambda p: 1.0 - (p[..., 0] - x) ** 2 - (p[..., 1] - y) ** 2)
+    found = level_set(cap, Section(SQUARE, ("x", "y")), NAMES, 1.0 - 1e-4)
+    assert found.figures.area == pytest.approx(math.pi * 1e-4, rel=0.2)
+
+
+def test_where_nothing_is_seen_the_finest_grid_was_looked_at_and_says_its_step() -> None:
+    found = level_set(made(bump), Section(SQUARE, ("x", "y")), NAMES, 1e6)
+    assert found.figures.area == 0.0
+    assert len(found.map.first) == FINEST
+    assert found.step == pytest.approx((2.0 / (FINEST - 1),) * 2)
+
+
 def test_a_plane_out_of_reach_is_empty_and_so_is_its_boundary() -> None:
-    beyond = Cylinder(radius=0.5, z=(2.0, 3.0), theta=(0.0, 1.0))
+    beyond = Cylinder(radius=0.5, z=(2.5, 2.5), theta=(0.5, 0.5))
     found = level_set(index_of(Heli4(), "fvi"), Section(beyond, ("x", "y")), NAMES, None)
     assert found.figures.area == 0.0
     assert found.boundary == []

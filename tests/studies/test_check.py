@@ -15,13 +15,16 @@ from typing import Any
 import pytest
 import tomli_w
 
+from studies.certify import Claim, question_of
 from studies.check import check_study, compare, proofs
+from studies.committed_proofs import proof_entries, proof_files
 from studies.errors import StudyError
 from studies.load import load_study
 from studies.locate import study_names
 from studies.optimum import read_optimum
 from studies.pipeline import run
 from tests.studies.command_line import SMALL, SmallRun, copy_of, linkwright
+from trajectory import write_files
 
 
 @pytest.fixture(autouse=True)
@@ -38,7 +41,8 @@ def test_check_accepts_every_committed_optimum() -> None:
 def test_check_accepts_what_a_run_committed(small_run: SmallRun) -> None:
     ended = linkwright("check", small_run[0])
     assert ended.returncode == 0, ended.stdout + ended.stderr
-    assert "all holds" in ended.stdout
+    assert re.fullmatch(r".*: all holds, \d\d claims\n", ended.stdout)
+    assert len(linkwright("check", small_run[0], "--verbose").stdout.splitlines()) > 10
 
 
 def leaves(node: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
@@ -93,6 +97,21 @@ def test_an_invented_figure_is_noticed(small_run: SmallRun, tmp_path: Path) -> N
     file.write_text(file.read_text().replace("[figures]\n", "[figures]\nJ_q = 0.99\n"))
     failed = [row.what for row in check_study(tmp_path / "study.toml") if not row.holds]
     assert failed == ["figures.J_q"]
+
+
+def test_a_best_bound_that_says_next_to_nothing_is_noticed(small_run: SmallRun, tmp_path: Path) -> None:
+    """Sound in itself, entered in the optimum and replayed: only its worth is gone."""
+    file = copy_of(small_run[0], tmp_path)
+    study, optimum = load_study(tmp_path / "study.toml"), read_optimum(file)
+    weak = question_of(study, optimum.robot(study)).prove(Claim("J_q", 0.01, best=False), None, None, lambda _: None)
+    assert weak.certificate.status == "proved"
+    write_files(tmp_path, proof_files([weak]))
+    optimum.certificates["J_q"].update(proof_entries([weak], 0)["J_q"])
+    file.write_text(optimum.text())
+    ended = linkwright("check", tmp_path)
+    assert ended.returncode == 1
+    assert "1 of " in ended.stdout
+    assert re.search(r"FAIL +J_q, best bound +a bound above 0.5 of the lowest found, \S+ +0.01 +-", ended.stdout)
 
 
 def test_a_failed_check_is_a_table_with_the_margin(small_run: SmallRun, tmp_path: Path) -> None:

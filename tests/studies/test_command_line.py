@@ -62,6 +62,14 @@ def test_an_error_is_a_message_and_an_exit_status_and_no_traceback(tmp_path: Pat
     assert "Traceback" not in ended.stderr
 
 
+def test_the_help_of_trajectory_promises_no_files_without_a_folder(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(SMALL)
+    shown = linkwright("trajectory", "--help").stdout
+    assert "none are written" in shown
+    assert linkwright("trajectory", tmp_path, "--prototype", cwd=tmp_path).returncode == 0
+    assert [file.name for file in tmp_path.iterdir()] == ["study.toml"]
+
+
 def test_list_shows_the_mechanisms_and_the_studies() -> None:
     data = json.loads(linkwright("list", "--json").stdout)
     assert "Heli4" in data["mechanisms"]

@@ -16,7 +16,7 @@ from studies.schema_trajectory import FILES
 from tests.studies.test_command_line import SMALL
 from trajectory.drive_files import FORMATS
 
-DRIVE = "[trajectory.drive]\nincrements = 1048576\ngear = 9\naxes = ['X', 'Y', 'Z', 'A']\n"
+DRIVE = "[trajectory.drive]\nincrements = 1048576\nencoder_gear = 9\naxes = ['X', 'Y', 'Z', 'A']\n"
 
 
 @pytest.fixture(autouse=True)
@@ -61,11 +61,15 @@ def test_the_command_line_s_formats_take_the_study_s_place(tmp_path: Path) -> No
     ("text", "arguments", "says"),
     [
         (SMALL, ["--format", "rso2"], "found rso2; expected one of csv (all of each set-point, SI), ros2 (ROS 2"),
-        (SMALL, ["--format", "cia402"], "increments"),
+        (SMALL, ["--format", "cia402"], ": trajectory: found Drive increments None for --format cia402; expected the"),
         (asking('["pmac"]', DRIVE.replace("'A'", "'joint'")), [], "letters out of X Y Z"),
         (asking('["zaber"]', DRIVE.replace(", 'A'", "")), [], "4 names, one an actuator"),
-        (asking('["csv"]', DRIVE.replace("gear = 9", "gear = 0")), [], "other than 0"),
-        (asking('["cia402"]', DRIVE.replace("gear = 9", "gear = 90000")), [], "-2147483648 to 2147483647"),
+        (asking('["csv"]', DRIVE.replace("encoder_gear = 9", "encoder_gear = 0")), [], "other than 0"),
+        (
+            asking('["cia402"]', DRIVE.replace("encoder_gear = 9", "encoder_gear = 90000")),
+            [],
+            "-2147483648 to 2147483647",
+        ),
         (asking('["pmac"]').replace("0.002", "0.0004"), [], "1/4096 ms"),
     ],
 )

@@ -102,7 +102,7 @@ def test_a_committed_optimum_is_the_studys_machine(small_run: SmallRun, tmp_path
 def test_set_points_say_which_machine_they_are_for(tmp_path: Path) -> None:
     study = study_of(tmp_path, GIVEN + HARDWARE)
     assert study.trajectory is not None
-    assert write_setpoints(time_cycle(study.trajectory, robot_of(study)), study.trajectory, tmp_path)
+    assert write_setpoints(time_cycle(study, robot_of(study)), study.trajectory, tmp_path)
     header = read_setpoints(tmp_path / "cycle.csv").header
     assert header["inertia"]["arm_mass"] == 1.1
     assert header["inertia"]["drive_train"]["coulomb"] == [1.0, 1.0, 2.0, 2.0]
@@ -117,7 +117,7 @@ def test_a_machine_twice_as_heavy_and_as_strong_is_as_fast(tmp_path: Path) -> No
     for text in (GIVEN, heavy.replace("torque = 127", "torque = 254"), heavy):
         study = study_of(tmp_path, text)
         assert study.trajectory is not None
-        times.append(time_cycle(study.trajectory, robot_of(study)).half_cycle)
+        times.append(time_cycle(study, robot_of(study)).half_cycle)
     assert times[1] == pytest.approx(times[0], rel=1e-9)
     assert times[2] > 1.2 * times[0]
 
@@ -126,7 +126,7 @@ def test_a_machine_without_masses_is_as_fast_as_its_speed_limit_lets_it_and_bear
     masses = "drive = 0\narm_mass = 0\nrod_mass = 0\nplate_masses = [0, 0]\ntool = 0\n"
     study = study_of(tmp_path, GIVEN.replace("payload = 0.5", "payload = 0") + "[inertia]\n" + masses)
     assert study.trajectory is not None
-    figures = time_cycle(study.trajectory, robot_of(study)).figures()
+    figures = time_cycle(study, robot_of(study)).figures()
     assert figures["peak_over_limit"]["joint speed"] == pytest.approx(1.0, abs=1e-3)
     assert figures["peak_over_limit"]["torque"] == figures["worst_rms_over_peak_torque"] == 0.0
 

@@ -15,6 +15,7 @@ from design import Box, Cylinder
 from kinematics import Heli4, Redundant3T1R
 from studies.load import load_study
 from studies.locate import study_path
+from studies.map_console import print_map
 from studies.map_options import InvalidOption, MapRequest, map_request
 from studies.map_stage import run_map
 from tests.studies.command_line import linkwright
@@ -130,6 +131,11 @@ def test_an_option_that_cannot_be_used_is_named(options: dict[str, Any], option:
 def test_what_cannot_be_proved_is_refused_before_anything_runs(asked: Any) -> None:
     with pytest.raises(InvalidOption):
         run_map(asked(), 1e-3, True, lambda _: pytest.fail("ran"))
+
+
+def test_where_no_node_keeps_the_bound_the_grid_s_step_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+    print_map(run_map(redundant(at=("theta=0",), at_least=99.0), 1e-3, False, lambda _: None), [], False)
+    assert "no node keeps the bound; they are 0.0012 m and 0.0012 m apart" in " ".join(capsys.readouterr().out.split())
 
 
 def test_a_bad_option_exits_with_2_and_writes_nothing(tmp_path: Path) -> None:

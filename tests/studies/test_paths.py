@@ -111,7 +111,7 @@ def test_the_waypoints_belong_to_the_digest(tmp_path: Path) -> None:
 def test_a_study_s_waypoints_are_timed_with_a_stop_at_the_corner_without_a_blend(tmp_path: Path) -> None:
     study = load_study(written(tmp_path, ROWS.replace("blend_mm = 30\n", "")))
     assert study.trajectory is not None
-    timing = time_cycle(study.trajectory, robot_of(study))
+    timing = time_cycle(study, robot_of(study))
     assert [len(way) for way in (timing.cycle.there, timing.cycle.back)] == [2, 2]
     figures = timing.figures()
     assert figures["half_cycle"] == sum(piece.duration for piece in timing.cycle.there)

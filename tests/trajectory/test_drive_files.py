@@ -23,7 +23,7 @@ from trajectory.drive_files import FORMATS, Drive, drive_files
 from trajectory.drive_files.cia402 import interpolation_time
 
 PERIOD = 1e-3
-DRIVE = Drive(increments=2**20, gear=9.0)
+DRIVE = Drive(increments=2**20, encoder_gear=9.0)
 ROUNDED = 0.5e-9 + 1e-12  # of the text formats, in degrees or millimetres; and double arithmetic on thousands of them
 
 
@@ -161,7 +161,8 @@ def test_increments_pass_through_a_drive_s_process_data(setpoints: Setpoints) ->
 
 def test_a_motor_that_turns_the_other_way_counts_the_other_way(turning: Setpoints) -> None:
     (*_, there), (*_, back) = (
-        read_increments(one(turning, "cia402", Drive(increments=4096, gear=gear))) for gear in (5.0, (-5.0,) * 4)
+        read_increments(one(turning, "cia402", Drive(increments=4096, encoder_gear=gear)))
+        for gear in (5.0, (-5.0,) * 4)
     )
     assert np.array_equal(there, -back)
 
@@ -180,7 +181,7 @@ def test_a_period_that_no_byte_can_say_is_refused() -> None:
 
 def test_an_overflow_of_32_bits_is_refused_with_its_axis(turning: Setpoints) -> None:
     with pytest.raises(InvalidValue, match="0x607A of q2, set-point"):
-        one(turning, "cia402", Drive(increments=2**24, gear=(1.0, 9000.0, 1.0, 1.0)))
+        one(turning, "cia402", Drive(increments=2**24, encoder_gear=(1.0, 9000.0, 1.0, 1.0)))
 
 
 def test_increments_are_asked_for(turning: Setpoints) -> None:
@@ -315,8 +316,8 @@ def test_a_number_that_is_not_finite_reaches_no_file(turning: Setpoints, name: s
         {"axes": ("q1", "q,2", "q3", "q4")},
         {"increments": 0},
         {"increments": (4096, 4096.5)},
-        {"gear": 0.0},
-        {"gear": math.nan},
+        {"encoder_gear": 0.0},
+        {"encoder_gear": math.nan},
     ],
 )
 def test_a_drive_that_cannot_be_is_refused(wrong: dict[str, object]) -> None:
@@ -330,7 +331,7 @@ def test_a_drive_that_cannot_be_is_refused(wrong: dict[str, object]) -> None:
         ("ros2", Drive(axes=("a", "b")), "axes"),
         ("pmac", Drive(axes=("q1", "q2", "q3", "q4")), "letters"),
         ("cia402", Drive(increments=(1, 2)), "increments"),
-        ("cia402", Drive(increments=1, gear=(1.0, 2.0)), "gear"),
+        ("cia402", Drive(increments=1, encoder_gear=(1.0, 2.0)), "encoder_gear"),
         ("step", Drive(), r"one of csv \(.*, ros2 \("),
     ],
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import casadi as ca
 import numpy as np
 import pytest
 
@@ -18,11 +19,13 @@ from trajectory import (
     certify_path,
     free_motion,
     lower_bound,
+    there_and_back,
     verify,
 )
 from trajectory.arch import TOLERANCE, Arch
 from trajectory.free_law import _require_clear
 from trajectory.interval_nlp import Answer, IntervalProgram
+from trajectory.pose_bounds import EDGE, PoseBounds, bezier_points
 from trajectory.pose_spline import InTime
 
 JERK = Limits(speed=20.0, torque=127.0, jerk=1e5)
@@ -68,6 +71,31 @@ def test_the_way_back_takes_as_long_and_starts_where_the_way_there_ends(
     back = free_motion(robot, Reversed(path), JERK, 1.0, 24)
     assert back.duration == pytest.approx(motion.duration, rel=1e-3)
     assert back.at(np.array(0.0)).pose == pytest.approx(motion.at(np.array(motion.duration)).pose, abs=1e-9)
+
+
+def test_it_stays_inside_its_bounds_between_the_knots_too(robot: Heli4, path: AdeptCycle, motion: PoseSpline) -> None:
+    """Bounds that the free motion without them leaves: above, in its turn, and through the circle."""
+    bounds = PoseBounds((-1.0, -1.0, -0.8, 0.0), (1.0, 1.0, -0.75, math.pi), radius=0.153)
+
+    def room(found: PoseSpline) -> np.ndarray:
+        pose = found.at(np.linspace(0.0, found.duration, 20_001)).pose
+        sides = [pose[:, 2] + 0.8, -0.75 - pose[:, 2], pose[:, 3], math.pi - pose[:, 3]]
+        return np.min([*sides, 0.153 - np.hypot(pose[:, 0], pose[:, 1])], axis=1)
+
+    inside = free_motion(robot, path, JERK, 1.0, 16, bounds)
+    assert room(inside).min() > -2 * EDGE
+    assert room(motion).min() < -0.01
+
+
+def test_a_cubic_is_inside_the_hull_of_its_bezier_points() -> None:
+    rng, t = np.random.default_rng(3), np.linspace(0.0, 1.0, 1001)[:, None]
+    start, lasting = rng.normal(size=(4, 50)), 0.3
+    points = np.array([np.array(ca.DM(p))[:, 0] for p in bezier_points([ca.DM(row) for row in start], lasting)])
+    p, v, a, j = start
+    since = lasting * t
+    curve = p + since * (v + since * (a / 2 + since * j / 6))
+    bernstein = sum(math.comb(3, k) * t**k * (1 - t) ** (3 - k) * points[k] for k in range(4))
+    assert np.abs(curve - bernstein).max() < 1e-12
 
 
 def test_an_answer_that_did_not_converge_is_not_returned(
@@ -141,4 +169,7 @@ def test_what_is_proved_is_proved_of_the_motion_and_not_of_the_path_that_it_left
     poses = motion.at(np.linspace(0.0, motion.duration, 20_001)).pose
     for name in ("reach", "J_q", "det_J_x", "internal_determinant", "joint_travel"):
         assert 0.85 * robot.margin(name, poses).min() <= own[name] <= robot.margin(name, poses).min()
-    assert own["reach"] != certify_path(robot, path).margins["reach"]
+    cycle = there_and_back(robot, path, JERK, 1.0, lambda *_: motion)
+    assert {way.length for way in cycle.ways} == {cycle.half}
+    assert cycle.certificate.margins["reach"] == pytest.approx(own["reach"], rel=1e-5)
+    assert own["reach"] != pytest.approx(certify_path(robot, path).margins["reach"], rel=1e-4)

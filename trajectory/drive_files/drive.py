@@ -20,10 +20,10 @@ class Drive:
 
     Attributes:
         axes: (m,) names; each format's own where None.
-        increments: of the encoder: in a turn of the motor where the actuator counts in rad, in a metre where in m; one
-            number or one an axis. None where no format needs it.
-        gear: turns of the motor for one of the actuator, (metres for a metre on a rail); negative where the motor
-            turns the other way; one number or one an axis.
+        increments: of the encoder: in a turn of it where the actuator counts in rad, in a metre where in m; one number
+            or one an axis. None where no format needs it.
+        encoder_gear: turns of the encoder for one of the actuator (metres for a metre); negative where it counts the
+            other way; one number or one an axis. It is 1, whatever the motor's gear, where the encoder is behind it.
 
     Raises:
         InvalidValue: a value that no drive can have; the field is named.
@@ -31,7 +31,7 @@ class Drive:
 
     axes: tuple[str, ...] | None = None
     increments: int | tuple[int, ...] | None = None
-    gear: float | tuple[float, ...] = 1.0
+    encoder_gear: float | tuple[float, ...] = 1.0
 
     def __post_init__(self) -> None:
         if self.axes is not None:
@@ -41,8 +41,8 @@ class Drive:
         increments = () if self.increments is None else _several(self.increments)
         if not all(isinstance(n, int) and n > 0 for n in increments):
             raise InvalidValue("Drive increments", self.increments, "whole numbers > 0")
-        if not all(math.isfinite(ratio) and ratio != 0 for ratio in _several(self.gear)):
-            raise InvalidValue("Drive gear", self.gear, "finite numbers other than 0")
+        if not all(math.isfinite(ratio) and ratio != 0 for ratio in _several(self.encoder_gear)):
+            raise InvalidValue("Drive encoder_gear", self.encoder_gear, "finite numbers other than 0")
 
     def names(self, own: tuple[str, ...]) -> tuple[str, ...]:
         """(m,) the axes' names; `own` are the format's.
@@ -63,13 +63,13 @@ class Drive:
             InvalidValue: increments are not given, or for another number of axes.
         """
         if self.increments is None:
-            raise InvalidValue("Drive increments", None, "the encoder's, in a turn of the motor (in a metre on a rail)")
+            raise InvalidValue("Drive increments", None, "the encoder's, in a turn of it (in a metre on a rail)")
         count = len(joint_units)
-        for name, value in (("increments", self.increments), ("gear", self.gear)):
+        for name, value in (("increments", self.increments), ("encoder_gear", self.encoder_gear)):
             if len(_several(value)) not in (1, count):
                 raise InvalidValue(f"Drive {name}", value, f"one number or {count}, one an actuator")
         turns = np.array([2 * math.pi if unit == "rad" else 1.0 for unit in joint_units])
-        return np.asarray(self.increments) * np.asarray(self.gear) / turns
+        return np.asarray(self.increments) * np.asarray(self.encoder_gear) / turns
 
 
 def _several(value: float | tuple[float, ...]) -> tuple[float, ...]:
