@@ -163,14 +163,14 @@ def timing_of(study: Study) -> tuple[Timing, tuple[str, ...]]:
     if asked.law == "free":
         from trajectory.free_law import free_motion
 
-        return partial(free_motion, within=_pose_bounds(study)), ()
+        return partial(free_motion, within=pose_bounds_of(study)), ()
     from trajectory.jerk_law import jerk_limited
 
     return jerk_limited, ()
 
 
-def _pose_bounds(study: Study) -> PoseBounds:
-    """The region, as the free law takes it."""
+def pose_bounds_of(study: Study) -> PoseBounds:
+    """The study's region, as the free law takes it."""
     region = region_of(study)
     low, high = zip(*(region.intervals[name] for name in mechanism_class(study.mechanism).pose_names), strict=True)
     return PoseBounds(low, high, region.radius if isinstance(region, Cylinder) else math.inf)

@@ -62,7 +62,8 @@ def rows_of(case: Case) -> list[Row]:
     rows = []
     for name, (law, jerk) in OURS.items():
         limits = case.limits if jerk else case.without_jerk
-        rows.append(measured(case, name, jerk, partial(law, case.robot, case.path, limits, case.payload)))
+        own = {"within": case.within} if law is free_motion else {}
+        rows.append(measured(case, name, jerk, partial(law, case.robot, case.path, limits, case.payload, **own)))
     for name, module, function, options, jerk in PEERS:
         try:
             law = getattr(import_module(f"tests.bench.timing.{module}"), function)

@@ -8,20 +8,25 @@ from dataclasses import dataclass, replace
 from kinematics import Heli4, Mechanism
 from studies.load import load_study
 from studies.locate import study_path
-from studies.setup import limits_of, path_of, robot_of
+from studies.setup import limits_of, path_of, pose_bounds_of, robot_of
 from trajectory import AdeptCycle, Limits, Path
 from trajectory.path import Array
+from trajectory.pose_bounds import PoseBounds
 
 
 @dataclass(frozen=True)
 class Case:
-    """What every law is given; SI. The comparison knows limits of the drives' speed, acceleration, torque and jerk."""
+    """What every law is given; SI. The comparison knows limits of the drives' speed, acceleration, torque and jerk.
+
+    `within` is the study's region, for a law with a path of its own.
+    """
 
     name: str
     robot: Mechanism
     path: Path
     limits: Limits
     payload: float
+    within: PoseBounds | None = None
 
     @property
     def without_jerk(self) -> Limits:
@@ -54,4 +59,5 @@ def _of_study(study: str, name: str) -> Case:
     asked = found.trajectory
     assert asked is not None
     robot = robot_of(found)
-    return Case(name, robot, path_of(asked, robot.pose_names), limits_of(asked.limits), asked.payload)
+    path = path_of(asked, robot.pose_names)
+    return Case(name, robot, path, limits_of(asked.limits), asked.payload, pose_bounds_of(found))
