@@ -8,6 +8,7 @@ written out once and laid block by block: far smaller than what differentiating 
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -52,7 +53,7 @@ class IntervalProgram:
     def __init__(self, constraints: IntervalConstraints, intervals: int) -> None:
         self._constraints, self._intervals = constraints, intervals
         self._size = constraints.start.numel()
-        count, size = intervals, self._size
+        count, size, cores = intervals, self._size, os.cpu_count() or 1
         unknowns = ca.MX.sym("unknowns", count * size + 3 * size // 4 + 1)
         starts = ca.reshape(unknowns[: count * size], size, count)
         durations = ca.repmat(unknowns[-1], 1, count)
@@ -62,11 +63,11 @@ class IntervalProgram:
         every = ca.vertcat(joins @ unknowns, ca.vec(local), ca.sum2(summed))
         nothing = ca.MX.sym("nothing", 0)
         multipliers, scale = ca.MX.sym("multipliers", every.numel()), ca.MX.sym("scale")
-        parts = jacobian.map(count).call([starts, durations])
+        parts = jacobian.map(count, "thread", cores).call([starts, durations])
         slopes = ca.vertcat(ca.MX(joins), self._jacobian(parts, unknowns.numel()))
         names = ["x", "p", "lam_f", "lam_g"]
         in_blocks = self._multipliers(multipliers, joins.shape[0])
-        parts = hessian.map(count).call([starts, durations, *in_blocks])
+        parts = hessian.map(count, "thread", cores).call([starts, durations, *in_blocks])
         curvature = self._hessian(parts, unknowns.numel())
         options: dict[str, Any] = {
             "jac_g": ca.Function("slopes", [unknowns, nothing], [every, slopes], names[:2], ["g", "jac_g_x"]),
