@@ -79,7 +79,7 @@ def test_toppra(benchmark: Any, intervals: int) -> None:
     benchmark.extra_info["half_cycle"] = law.duration
 
 
-@pytest.mark.parametrize("intervals", [80, 120, 160, 240])
+@pytest.mark.parametrize("intervals", [100, 200, 400])
 def test_jerk_law(benchmark: Any, intervals: int) -> None:
     limits = Limits(speed=20.0, torque=127.0, jerk=1e5)
     timing = partial(jerk_limited, ROBOT, AdeptCycle(), limits, 1.0, intervals=intervals)
