@@ -173,6 +173,15 @@ def test_each_limit_is_kept_and_used(robot: Heli4, path: AdeptCycle, more: dict[
     assert mended.verification.peak_over_limit[active] > 0.98
 
 
+def test_where_the_rms_torque_alone_holds_back_it_converges_and_the_jerk_limit_hardly_matters(
+    robot: Heli4, path: AdeptCycle
+) -> None:
+    smooth, rough = (replace(SMOOTH, rms_torque=76.2, jerk=jerk) for jerk in (1e6, 1e7))
+    slower, faster = (repair(robot, jerk_limited(robot, path, asked, 1.0), asked, 1.0) for asked in (smooth, rough))
+    assert 0.995 * slower.motion.duration < faster.motion.duration < slower.motion.duration
+    assert faster.verification.peak_over_limit["rms torque"] == pytest.approx(1.0, abs=1e-3)
+
+
 @pytest.mark.parametrize(
     ("robot", "path", "limits", "payload"),
     [
