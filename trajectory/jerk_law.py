@@ -27,6 +27,7 @@ from trajectory.verification import integrals
 
 INTERVALS = 200
 LEAST_INTERVALS = 20
+_FEWER = 4  # times, on the first knots
 ROUNDS = 6  # of solving and tightening
 _CLOSE = 1.00005  # peak over limit that is left to the repair
 _SAMPLES = np.linspace(0.0, 1.0, 65)  # of each interval, where limits are looked at between the knots
@@ -64,7 +65,7 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     robot.require_reachable(path.evaluate(grid, 0)[0])
     asked = {**limits.as_dict(), "payload": payload, "intervals": intervals, "path": path.as_dict()}
     problem = _Problem(robot, path, limits, payload, asked)
-    coarse = problem.solved(polynomial_start(robot, path, limits, payload, intervals // 2))
+    coarse = problem.solved(polynomial_start(robot, path, limits, payload, max(intervals // _FEWER, LEAST_INTERVALS)))
     over = np.max([r - 1.0 for name, r in problem.excess(coarse.timed).items() if name != _RMS], axis=0)
     return _tightened(problem, problem.solved(denser_start(coarse.timed.law, over, intervals))).timed
 

@@ -15,7 +15,9 @@ where it ends, and its duration h (all over powers of the start's duration T and
     RMS torque           sum of each interval's integral of tau^2, a parabola there, - (its limit)^2 sum h
 
 All but the jerk is limited in the middle of each interval's time too: between the knots alone, the acceleration would
-bulge. Where on the path a middle is, the start says; solving again from the answer makes that exact.
+bulge. Where on the path a middle is, the start says; solving again from the answer makes that exact. Jumps of the jerk
+from one interval to the next cost a trifle: under a limit of the RMS torque alone the time hardly depends on them, and
+the search would not end.
 """
 
 from __future__ import annotations
@@ -40,6 +42,7 @@ _OPTIONS: dict[str, Any] = {
     "bound_relax_factor": 0.0,
 }
 _CLOSE: dict[str, Any] = {"mu_init": 1e-4, "bound_push": 1e-3}  # a start that is close to the answer
+_JUMPS = 1e-8  # of the duration, about: what jumps of the jerk cost, where no limit says what it is
 _PUSHES = ("bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac", "mult_bound_push")
 _WARM: dict[str, Any] = {  # the answer of almost the same problem, with its multipliers
     "mu_init": 1e-8,
@@ -119,7 +122,7 @@ def solver_of(shape: Shape) -> Solver:
     nlp = {
         "x": ca.vertcat(*x),
         "p": ca.veccat(*symbols.made.values()),
-        "f": ca.sum1(h),
+        "f": ca.sum1(h) + _JUMPS * ca.dot(h[1:], ((j[1:] - k[:-1]) * h[1:]) ** 2),
         "g": ca.vertcat(*equations, *(row.expression for row in rows)),
     }
     first = _ipopt(nlp, _CLOSE)

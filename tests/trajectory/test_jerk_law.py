@@ -155,6 +155,8 @@ def test_limits_of_a_film_played_faster_give_the_same_motion_faster(robot: Heli4
     ("more", "active"),
     [
         ({"rms_torque": 76.2}, "rms torque"),
+        ({"rms_torque": 76.2, "jerk": 1e7}, "rms torque"),
+        ({"rms_torque": 76.2, "tool_acceleration": 165.0}, "rms torque"),
         ({"stall_torque": 130.0, "no_load_speed": 12.0}, "torque at speed"),
         ({"tool_acceleration": 100.0}, "tool acceleration"),
         ({"tool_speed": 3.0}, "tool speed"),
@@ -169,6 +171,15 @@ def test_each_limit_is_kept_and_used(robot: Heli4, path: AdeptCycle, more: dict[
     mended = repair(robot, jerk_limited(robot, path, limits, 1.0, QUICK), limits, 1.0)
     assert mended.verification.ok
     assert mended.verification.peak_over_limit[active] > 0.98
+
+
+def test_where_the_rms_torque_alone_holds_back_it_converges_and_the_jerk_limit_hardly_matters(
+    robot: Heli4, path: AdeptCycle
+) -> None:
+    smooth, rough = (replace(SMOOTH, rms_torque=76.2, jerk=jerk) for jerk in (1e6, 1e7))
+    slower, faster = (repair(robot, jerk_limited(robot, path, asked, 1.0), asked, 1.0) for asked in (smooth, rough))
+    assert 0.995 * slower.motion.duration < faster.motion.duration < slower.motion.duration
+    assert faster.verification.peak_over_limit["rms torque"] == pytest.approx(1.0, abs=1e-3)
 
 
 @pytest.mark.parametrize(
