@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from studies.errors import KeyPath
@@ -62,9 +63,11 @@ def _trajectory_table(pose_names: Sequence[str]) -> Table:
     cycle = Table({name: key for name, key in table_of(Cycle).keys.items() if not lacking.get(name)})
     coordinates = {name: Key("a finite number", _pose_dimension(name)) for name in pose_names}
     waypoint = table_of(Waypoint, rows=True).updated(coordinates)
-    trajectory = table_of(Trajectory).updated({"path": table_of(WaypointPath).updated({"waypoint": waypoint})})
-    keys = {name: key for name, key in trajectory.keys.items() if name != "cycle"}
-    return Table(keys | {"cycle": cycle} if "z" in pose_names else keys)
+    path = table_of(WaypointPath).updated({"waypoint": waypoint})
+    trajectory = table_of(Trajectory).updated({"path": path})
+    if "z" in pose_names:
+        return trajectory.updated({"path": replace(path, other="[trajectory.cycle]"), "cycle": cycle})
+    return Table({name: key for name, key in trajectory.keys.items() if name != "cycle"})
 
 
 def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:

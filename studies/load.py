@@ -129,7 +129,7 @@ def _problems(file: TomlFile, table: Table, conversion: Conversion, wrong: set[K
             value, found = None, "nothing"
         node = _node(table, path)
         suffix = str(spelling[-1])[len(str(path[-1])) + 1 :]
-        expected = node.describe(suffix, value) if isinstance(node, Key) else node.describe()
+        expected = node.describe(suffix, value) if isinstance(node, Key) else node.describe(value)
         problems.append(file.problem(spelling, found, expected))
     return problems
 

@@ -13,7 +13,8 @@ from design import Certificate
 from kinematics import Mechanism
 from kinematics.errors import InvalidGeometry
 from studies.committed_proofs import known_certificates, proof_entries
-from studies.errors import KeyPath, StudyError, spelled
+from studies.errors import KeyPath, Problem, StudyError, spelled
+from studies.locate import FILE as STUDY
 from studies.mechanisms import mechanism_class
 from studies.pipeline import Outcome
 from studies.schema import Study
@@ -112,6 +113,9 @@ def read_optimum(path: Path) -> Optimum:
     Raises:
         StudyError: missing, not TOML, or a part missing or of the wrong kind, with its line.
     """
+    if not path.is_file():
+        how = f"`linkwright run {path.parent / STUDY} --commit` writes it, and --prototype does without"
+        raise StudyError([Problem(path, "", None, "no such file", f"the study's committed optimum: {how}")])
     optimum = Optimum((file := read_toml(path)).data, file)
     for key, kind, words in (("mechanism", str, "a name"), ("active", list, "a list"), *_tables()):
         if not isinstance(optimum.data.get(key), kind):

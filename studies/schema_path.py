@@ -11,6 +11,7 @@ from studies.units import Dimension, Key
 from trajectory.adept import STANDARD_SIZES, AdeptCycle
 
 LENGTH, ANGLE = Dimension.LENGTH, Dimension.ANGLE
+_NOT_OF_THE_PATH = ("size", "place", "payload", "payload_back")
 
 
 class Cycle(Model):
@@ -41,7 +42,7 @@ class Cycle(Model):
     turn: Annotated[float, Key("an angle", ANGLE)] = 0.0
     start_angle: Annotated[float, Key("an angle", ANGLE)] = 0.0
     tilt: Annotated[tuple[float, float], Key("two angles, roll and pitch at the place", ANGLE)] = (0.0, 0.0)
-    payload: Annotated[float, Field(ge=0), Key("a mass >= 0 (kg)")]
+    payload: Annotated[float, Field(ge=0), Key("a mass >= 0 (kg); payload_back for another one on the way back")]
     payload_back: Annotated[float | None, Field(ge=0), Key("a mass >= 0 (kg)")] = None
     """On the way back; None for the same."""
 
@@ -88,7 +89,7 @@ def adept_cycle(cycle: Mapping[str, Any], **others: Any) -> AdeptCycle:
     Raises:
         InvalidValue: the corners do not fit, or the pose has no such angles.
     """
-    given = {k: v for k, v in cycle.items() if v is not None and k not in ("size", "place", "payload")} | others
+    given = {k: v for k, v in cycle.items() if v is not None and k not in _NOT_OF_THE_PATH} | others
     if cycle["place"] is not None:
         return AdeptCycle.between(
             **{k: v for k, v in given.items() if k not in ("heading", "rise")}, place=cycle["place"]

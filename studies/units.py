@@ -4,7 +4,7 @@ import difflib
 import math
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from enum import StrEnum
 from typing import Any
@@ -64,19 +64,23 @@ class Key:
 
 @dataclass(frozen=True)
 class Table:
-    """The keys of a table; with `rows`, of each table of an array."""
+    """The keys of a table; with `rows`, of each table of an array; `other` is one that stands in its place."""
 
     keys: "Mapping[str, Key | Table]"
     rows: bool = False
+    other: str = ""
 
     def updated(self, keys: "Mapping[str, Key | Table]") -> "Table":
         """This table with `keys` added or replaced."""
-        return Table({**self.keys, **keys}, self.rows)
+        return replace(self, keys={**self.keys, **keys})
 
-    def describe(self) -> str:
-        """The words of an error where there is no such table."""
+    def describe(self, found: object = None) -> str:
+        """The words of an error where there is no such table, or where it must not be."""
+        if self.other and isinstance(found, dict):
+            return f"no such table beside {self.other}: only one of the two"
         keys = f"one or more of {', '.join(self.keys)}"
-        return f"an array of tables, each with {keys}" if self.rows else f"a table with {keys}"
+        instead = f", or {self.other} in its place" if self.other else ""
+        return f"an array of tables, each with {keys}" if self.rows else f"a table with {keys}{instead}"
 
 
 @dataclass(frozen=True)

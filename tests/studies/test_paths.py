@@ -83,6 +83,15 @@ def test_pick_and_place_with_lifts_of_their_own(tmp_path: Path) -> None:
     assert (path.lift, path.place_lift) == (0.08, 0.04)
 
 
+def test_the_payload_back_is_that_of_the_way_back_alone(tmp_path: Path) -> None:
+    study = load_study(written(tmp_path, CYCLE + 'size = "25/305/25"\npayload_back = 0.0\n'))
+    assert study.trajectory is not None
+    cycle = time_cycle(study, robot_of(study)).cycle
+    assert [{p.payload for p in way} for way in (cycle.there, cycle.back)] == [{1.0}, {0.0}]
+    there, back = (sum(p.duration for p in way) for way in (cycle.there, cycle.back))
+    assert back < 0.97 * there  # less to accelerate, with the same drives
+
+
 def test_a_hexapod_tilts_and_turns_by_yaw(tmp_path: Path) -> None:
     text = CYCLE.replace("-0.8", "0.6") + "lift_mm = 25\nspan_mm = 150\ntilt_deg = [5, -3]\nturn_deg = 10\n"
     path = path_in(tmp_path, text, HEXAPOD)
@@ -127,6 +136,12 @@ def test_a_study_s_waypoints_are_timed_with_a_stop_at_the_corner_without_a_blend
         (CYCLE + 'size = "25/305/25"\nlift_mm = 25\n', HELI4, "cycle.lift_mm", "or a size instead"),
         (CYCLE + 'size = "25/305/25"\nplace = [0, 0, 0]\n', HELI4, "cycle.place", "no size beside it"),
         (CYCLE + "span_mm = 100\n", HELI4, "cycle.lift", "a length > 0"),
+        (
+            CYCLE.replace("= 1.0", "= [1.0, 0.0]"),
+            HELI4,
+            "cycle.payload",
+            "payload_back for another one on the way back",
+        ),
         (CYCLE + "lift_mm = 25\n", HELI4, "cycle.span", "a size or a place"),
         (CYCLE + "lift_mm = 25\nspan = 0.1\nplace = [0, 0, -0.8]\n", HELI4, "cycle.span", "instead of it"),
         (CYCLE + "lift_mm = 25\nplace = [-0.15, 0, -0.7]\n", HELI4, "cycle.place", "not above the pick"),
@@ -134,8 +149,9 @@ def test_a_study_s_waypoints_are_timed_with_a_stop_at_the_corner_without_a_blend
         (CYCLE + "lift_mm = 25\nspan_mm = 100\nplace_lift_mm = 19\n", HELI4, "cycle.blend_mm", "at most the lift"),
         (CYCLE + "lift_mm = 25\nspan_mm = 100\ntilt_deg = [1, 2]\n", HELI4, "cycle.tilt_deg", "one of"),
         (CYCLE + "lift_mm = 25\nspan_mm = 100\n", PLANAR, "trajectory.cycle", "one of"),
-        ("", HELI4, "trajectory.path", "a table with"),
-        (CYCLE + 'size = "25/305/25"\n' + ROWS, HELI4, "trajectory.path", "a table with"),
+        ("", HELI4, "trajectory.path", "or [trajectory.cycle] in its place"),
+        ("", PLANAR, "trajectory.path", "file, waypoint, payload"),
+        (CYCLE + 'size = "25/305/25"\n' + ROWS, HELI4, "trajectory.path", "no such table beside [trajectory.cycle]"),
         ("[trajectory.path]\npayload = 1.0\n", HELI4, "trajectory.path", "one of the two"),
         (ROWS.replace("payload", 'file = "a.csv"\npayload'), HELI4, "trajectory.path", "one of the two"),
         (ROWS.replace("blend_mm = 30", "blend_mm = 101"), HELI4, "path.waypoint", "0.1 m"),
