@@ -33,50 +33,62 @@ class BoxRegion(_Region):
     """Every pose coordinate in its interval."""
 
     kind: Annotated[Literal["box"], KIND]
+    """With every coordinate of the pose beside it."""
 
 
 class CylinderRegion(_Region):
     """x and y within `radius` [m] of the z axis; `coordinates` has the others."""
 
     kind: Annotated[Literal["cylinder"], KIND]
+    """With every coordinate of the pose but x and y beside it."""
     radius: Annotated[Positive, Key("a length > 0", LENGTH)]
+    """Of x and y about the z axis."""
 
 
 class Fvi(Model):
     """What the force-velocity index (39) is taken from: what the joints give, what is wanted."""
 
     joint_speed: Annotated[Positive, Key("a speed > 0", Dimension.JOINT_SPEED)]
-    """rad/s, or m/s on a rail."""
+    """What each joint gives."""
     joint_effort: Annotated[Positive, Key("an effort > 0 (N m, or N on a rail)")]
+    """What each joint gives."""
     speed: Annotated[Positive, Key("a speed > 0 (m/s)")]
     """Wanted worst isotropic speed [m/s]."""
     force: Annotated[Positive, Key("a force > 0 (N)")]
     """Wanted worst isotropic force [N]."""
     characteristic_length: Annotated[Positive | None, Key("a length > 0", LENGTH)] = None
-    """m; None for the mechanism's own."""
+    """Makes a rotation a length; None for the mechanism's own."""
 
 
 class Sum(Model):
-    """The geometry's `fields`, added, are `at_most` [m]; a tuple counts entry by entry."""
+    """The geometry's `fields`, added, are `at_most` [m]."""
 
     fields: Annotated[Annotated[tuple[Name, ...], Field(min_length=1)], Key("a list out of")]
+    """Lengths of the geometry, to be added; a tuple counts entry by entry."""
     at_most: Annotated[Positive, Key("a length > 0", LENGTH)]
+    """The sum."""
 
 
 class Optimise(Model):
-    """What the synthesis may change: `variables` by geometry field, (low, high), one for each entry of a tuple."""
+    """What the synthesis may change."""
 
     seed: Annotated[int, Field(ge=0, lt=2**32), Key("a whole number from 0 to 2^32 - 1")] = 0
+    """Of the random starts."""
     starts: Annotated[int, Field(ge=1, le=10_000), Key("a whole number from 1 to 10000")] = 3
+    """Geometries to start from, the study's own first."""
     variables: Annotated[dict[str, Interval | tuple[Interval, ...]], Field(min_length=1), Table({})]
+    """What may change, by geometry field: (low, high), one for each entry of a tuple."""
     sums: Annotated[tuple[Sum, ...], table_of(Sum, rows=True)] = ()
+    """Limits of sums of lengths."""
 
 
 class Requirement(Model):
     """`margin` is `at_least` this at every pose of the region."""
 
     margin: Annotated[str, Key("one of")]
+    """What is required."""
     at_least: Annotated[float, Key("a finite number")]
+    """At every pose of the region and on the cycle."""
 
 
 class Certify(Model):
@@ -96,22 +108,31 @@ class Study(Model):
     name: str
     """The folder's name."""
     title: Annotated[Name, Key("a title")]
+    """Of the report."""
     mechanism: Annotated[str, Key("one of")]
+    """Whose closure is solved."""
     geometry: Annotated[dict[str, GeometryValue], Field(default_factory=dict), Table({})]
     """What differs from the prototype's geometry [m, rad, m per turn]."""
     inertia: Annotated[Inertia, Table({})] = Inertia()
+    """What differs from the prototype's masses and drives."""
     ranges: Annotated[Ranges, Field(default_factory=dict), Table({})]
+    """What differs from the prototype's joint ranges."""
     region: Annotated[Annotated[BoxRegion | CylinderRegion, Field(discriminator="kind")], Table({})]
+    """The workspace: every pose that is to be good."""
     fvi: Annotated[Fvi | None, table_of(Fvi)] = None
-    """None takes the mechanism's defaults."""
+    """What the FVI is taken from; None for the mechanism's own."""
     optimise: Annotated[Optimise | None, table_of(Optimise)] = None
+    """What the synthesis may change; None for the geometry as it is given."""
     dense_sample: Annotated[int, Field(ge=10_000, le=100_000_000), Key("a whole number from 10000 to 100000000")] = (
         1_000_000
     )
     """About how many poses of the region the worst cases are searched on, before the descents."""
     requirement: Annotated[tuple[Requirement, ...], table_of(Requirement, rows=True)] = ()
+    """What must hold."""
     certify: Annotated[Certify, table_of(Certify)] = Certify()
+    """What is proved."""
     trajectory: Annotated[Trajectory | None, table_of(Trajectory)] = None
+    """What is timed; None for no cycle."""
 
     @property
     def digest(self) -> str:

@@ -22,7 +22,9 @@ Name = Annotated[str, Field(min_length=1)]
 class Model(BaseModel):
     """A table of the file: no key beside its fields, no number that is not finite, nothing converted."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", strict=True, allow_inf_nan=False, use_attribute_docstrings=True
+    )
 
 
 def table_of(model: type[BaseModel], rows: bool = False) -> Table:

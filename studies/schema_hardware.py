@@ -18,9 +18,13 @@ class DriveTrain(Model):
     gear_ratio: Annotated[
         Numbers | None, Key("a number > 0, or one a joint (rad of the motor for one rad, or one m, of the joint)")
     ] = None
+    """Through it the motor's inertia and speed are felt."""
     motor_inertia: Annotated[Numbers | None, Key("a number >= 0, or one a joint (kg m^2)")] = None
+    """Of the rotor, on its own side of the gear."""
     coulomb: Annotated[Numbers | None, Key("a number >= 0, or one a joint (N m, or N)")] = None
+    """Dry friction, at the joint."""
     viscous: Annotated[Numbers | None, Key("a number >= 0, or one a joint (N m s/rad, or N s/m)")] = None
+    """Friction for each unit of speed, at the joint; the law `toppra` refuses it."""
 
 
 class Inertia(Model):
@@ -29,6 +33,7 @@ class Inertia(Model):
     masses: dict[str, Numbers] = Field(default_factory=dict)
     """By the fields of the mechanism's `Inertia` [SI]."""
     drive_train: Annotated[DriveTrain, table_of(DriveTrain)] = DriveTrain()
+    """What stands behind each actuator."""
 
     @model_validator(mode="before")
     @classmethod

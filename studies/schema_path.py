@@ -23,26 +23,35 @@ class Cycle(Model):
     pick: Annotated[tuple[float, float, float], Key("three lengths x, y, z", LENGTH)]
     """Where the cycle starts."""
     size: Annotated[str | None, Key("one of", choices=tuple(STANDARD_SIZES))] = None
+    """Lift, span and place lift at once [mm]."""
     place: Annotated[
         tuple[float, float, float] | None, Key("three lengths x, y, z, not above the pick; no size beside it", LENGTH)
     ] = None
-    """Where the half cycle ends."""
+    """Where the half cycle ends, in place of span, heading and rise."""
     lift: Annotated[
         Positive | None, Field(validate_default=True), Key("a length > 0, or a size instead of it", LENGTH)
     ] = None
+    """Height of the vertical leg above the pick."""
     span: Annotated[
         Positive | None, Field(validate_default=True), Key("a length > 0, or a size or a place instead of it", LENGTH)
     ] = None
+    """Horizontal distance from pick to place."""
     place_lift: Annotated[Positive | None, Key("a length > 0; no size beside it", LENGTH)] = None
-    """None for the lift."""
+    """Height of the vertical leg above the place; None for the lift."""
     rise: Annotated[float, Key("a length, how much higher the place is; no place beside it", LENGTH)] = 0.0
+    """Place above pick."""
     heading: Annotated[float, Key("an angle; no place beside it", ANGLE)] = 0.0
     """Direction of the span about z, from x."""
     blend: Annotated[Positive, Key("a length > 0, at most the lift and at most half the span", LENGTH)]
+    """What a corner takes off each of its legs."""
     turn: Annotated[float, Key("an angle", ANGLE)] = 0.0
+    """Change of theta, or yaw, from pick to place."""
     start_angle: Annotated[float, Key("an angle", ANGLE)] = 0.0
+    """Theta, or yaw, at the pick."""
     tilt: Annotated[tuple[float, float], Key("two angles, roll and pitch at the place", ANGLE)] = (0.0, 0.0)
+    """From level at the pick; only where the pose has roll and pitch."""
     payload: Annotated[float, Field(ge=0), Key("a mass >= 0 (kg); payload_back for another one on the way back")]
+    """At the tool."""
     payload_back: Annotated[float | None, Field(ge=0), Key("a mass >= 0 (kg)")] = None
     """On the way back; None for the same."""
 
@@ -103,6 +112,7 @@ class Waypoint(Model):
     coordinates: dict[str, float]
     """By the pose's names [m or rad]."""
     blend: Annotated[float, Field(ge=0), Key("a length >= 0", LENGTH)] = 0.0
+    """What the corner takes off both of its legs; 0 stops there."""
 
     @model_validator(mode="before")
     @classmethod
@@ -114,6 +124,8 @@ class WaypointPath(Model):
     """A path through waypoints, from a CSV file beside the study or from the study itself."""
 
     file: Annotated[Name | None, Key("the name of a CSV file, or waypoints instead of it")] = None
+    """Beside the study."""
     waypoint: Annotated[tuple[Waypoint, ...], table_of(Waypoint, rows=True)] = ()
     """In order; those of the file where one is given."""
     payload: Annotated[float, Field(ge=0), Key("a mass >= 0 (kg)")]
+    """At the tool, both ways."""

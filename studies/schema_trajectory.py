@@ -13,16 +13,24 @@ class Limits(Model):
     """What each joint can do: a number for all joints, or one a joint; None is no limit."""
 
     speed: Annotated[PerJoint, Key("a speed > 0, or one a joint", Dimension.JOINT_SPEED)]
+    """Of the joints."""
     acceleration: Annotated[PerJoint | None, Key("a number > 0, or one a joint (rad/s^2, or m/s^2)")] = None
+    """Of the joints."""
     torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
+    """Peak of the drives."""
     jerk: Annotated[PerJoint | None, Key("a number > 0, or one a joint (rad/s^3, or m/s^3)")] = None
+    """Of the joints; the law `jerk` needs one, `toppra` keeps none."""
     tool_speed: Annotated[Positive | None, Key("a speed > 0 (m/s)")] = None
+    """Of the tool point."""
     tool_acceleration: Annotated[Positive | None, Key("an acceleration > 0 (m/s^2)")] = None
+    """Of the tool point."""
     position: Annotated[
         Interval | Annotated[tuple[Interval, ...], Field(min_length=1)] | None,
         Key("low < high, or one such pair a joint (rad, or m)"),
     ] = None
+    """Of the joints; the path alone decides whether it is kept."""
     stall_torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
+    """With no_load_speed: abs(torque) <= stall_torque (1 - abs(speed) / no_load_speed)."""
     no_load_speed: Annotated[
         PerJoint | None,
         Field(validate_default=True),
@@ -30,7 +38,7 @@ class Limits(Model):
     ] = None
     """Both or neither: the ends of the speed-torque line."""
     rms_torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
-    """Of each way by itself, and so of the cycle."""
+    """Root mean square of each way by itself, and so of the cycle; not with the law `toppra`."""
 
     @field_validator("no_load_speed")
     @classmethod
@@ -50,42 +58,51 @@ class Approach(Model):
     """What the joints may do on the jerk-limited move from home to the cycle's start."""
 
     speed: Annotated[PerJoint, Key("a speed > 0, or one a joint", Dimension.JOINT_SPEED)]
+    """Of the joints."""
     acceleration: Annotated[PerJoint, Key("a number > 0, or one a joint (rad/s^2, or m/s^2)")]
+    """Of the joints."""
     jerk: Annotated[PerJoint, Key("a number > 0, or one a joint (rad/s^3, or m/s^3)")]
+    """Of the joints."""
 
 
 class Drive(Model):
     """What the drive files need of the machine; a value for all axes, or one an axis."""
 
     axes: Annotated[Annotated[tuple[Name, ...], Field(min_length=1)] | None, Key("a list of names, one a joint")] = None
+    """Each format's own where None."""
     increments: Annotated[
         Increments | Annotated[tuple[Increments, ...], Field(min_length=1)] | None,
         Key("a whole number > 0, or one a joint (in a turn of the encoder, or in a metre on a rail)"),
     ] = None
+    """Of the encoder; `cia402` needs it."""
     encoder_gear: Annotated[
         float | Annotated[tuple[float, ...], Field(min_length=1)],
         Key("a number other than 0, or one a joint (turns of the encoder for one of the joint)"),
     ] = 1.0
+    """Negative where it counts the other way."""
 
 
 class Trajectory(Model):
     """How the cycle is timed, and how its set-points are sampled."""
 
     law: Annotated[Literal["jerk", "toppra", "free"], Key("one of", choices=LAWS)] = "jerk"
-    """toppra keeps no jerk limit."""
+    """How it is timed; `toppra` keeps no jerk limit, `free` finds the path too."""
     grid: Annotated[int, Field(ge=1000, le=1_000_000), Key("a whole number from 1000 to 1000000")] = 2000
     """Points along the path."""
     period: Annotated[Positive, Key("a time > 0 (s)")] = 0.001
     """Of the set-points [s]."""
     cycle: Annotated[Cycle | None, table_of(Cycle)] = None
+    """What is travelled, or a path."""
     path: Annotated[WaypointPath | None, Field(validate_default=True), table_of(WaypointPath)] = None
-    """One of the two: what is travelled."""
+    """What is travelled, or a cycle."""
     limits: Annotated[Limits, table_of(Limits)]
+    """What the drives and the tool may do."""
     approach: Annotated[Approach | None, table_of(Approach)] = None
-    """None leaves the approach out."""
+    """The move from home to the start; None leaves it out."""
     files: Annotated[Annotated[tuple[File, ...], Field(min_length=1)], Key("a list out of", choices=FILES)] = ("csv",)
-    """Formats of the set-points' files."""
+    """Formats of the set-points."""
     drive: Annotated[Drive, table_of(Drive)] = Drive()
+    """What the drive files need of the machine."""
 
     @field_validator("path")
     @classmethod

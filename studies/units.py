@@ -52,9 +52,19 @@ class Key:
     dimension: Dimension = Dimension.NONE
     choices: tuple[str, ...] = ()
 
+    @property
+    def unit(self) -> str:
+        """In SI; "" where the words say it, or there is none."""
+        return _SI_UNIT.get(self.dimension, "")
+
+    @property
+    def suffix(self) -> str:
+        """What a spelling in the other unit ends in; "" where there is none."""
+        return _SUFFIX.get(self.dimension, "")
+
     def describe(self, suffix: str = "", found: object = None) -> str:
         """The words of an error, in the unit of a key spelled with `suffix`."""
-        unit = suffix or _SI_UNIT.get(self.dimension, "")
+        unit = suffix or self.unit
         words = f"{self.expected} ({unit})" if unit else self.expected
         if not self.choices:
             return words
@@ -128,7 +138,7 @@ class Conversion:
         name, suffix = _unit_ending(spelling, table.keys)
         node = table.keys.get(name)
         if isinstance(node, Key):
-            if suffix == _SUFFIX.get(node.dimension):
+            if suffix == node.suffix:
                 return name, suffix
             self._report(path, spelling, f'unit suffix "_{suffix}"', _spellings(name, node), [name])
         else:
@@ -166,16 +176,11 @@ def _unit_ending(spelling: str, names: Iterable[str]) -> tuple[str, str]:
 
 
 def _spellings(name: str, key: Key) -> str:
-    unit = _SI_UNIT.get(key.dimension)
-    return f"{name} ({unit}) or {name}_{_SUFFIX[key.dimension]}" if unit else f"{name}, which takes no suffix"
+    return f"{name} ({key.unit}) or {name}_{key.suffix}" if key.suffix else f"{name}, which takes no suffix"
 
 
 def _all_spellings(table: Table) -> list[str]:
-    suffixed = [
-        f"{name}_{_SUFFIX[key.dimension]}"
-        for name, key in table.keys.items()
-        if isinstance(key, Key) and key.dimension in _SUFFIX
-    ]
+    suffixed = [f"{name}_{key.suffix}" for name, key in table.keys.items() if isinstance(key, Key) and key.suffix]
     return [*table.keys, *suffixed]
 
 

@@ -1,0 +1,111 @@
+"""The keys of a study file, out of its schema: `python -m tests.bench.study_keys` writes those in docs/study_file.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, get_args
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from kinematics import MECHANISMS
+from studies.against_mechanism import study_table
+from studies.schema import Study
+from studies.units import Key, Table
+from tests.bench.page import ROOT, write_between
+
+PAGE = ROOT / "docs" / "study_file.md"
+NAME, BY = "keys", "python -m tests.bench.study_keys"
+_OF_THE_MECHANISM = {"coordinates": "a coordinate of the pose", "masses": "a mass of the mechanism"}
+
+
+def main() -> None:
+    """Write the page's tables."""
+    write_between(PAGE, NAME, tables(), BY)
+
+
+def tables() -> str:
+    """Markdown: the keys of each table of the file, then those that only a mechanism knows."""
+    parts = [_section(heading, model) for heading, model in [("At the top", Study), *sections(Study, ())]]
+    return "\n".join([*parts, _of_mechanisms()])
+
+
+def sections(model: type[BaseModel], path: tuple[str, ...]) -> Iterator[tuple[str, type[BaseModel]]]:
+    """Every table below a model: its heading as the file spells it, and its model."""
+    for name, field in model.model_fields.items():
+        if not isinstance(node := _node(field), Table):
+            continue
+        for inner in _models(field.annotation):
+            spelled = ".".join((*path, name))
+            yield f"`[[{spelled}]]`" if node.rows else f"`[{spelled}]`", inner
+            yield from sections(inner, (*path, name))
+
+
+def _section(heading: str, model: type[BaseModel]) -> str:
+    if "kind" in model.model_fields:
+        heading += f' with `kind = "{get_args(model.model_fields["kind"].annotation)[0]}"`'
+    fields = {name: f for name, f in model.model_fields.items() if _node(f) or name in _OF_THE_MECHANISM}
+    rows = [f"| {_key(n, f)} | {_holds(f)} | {_default(f)} | {f.description or ''} |" for n, f in fields.items()]
+    return "\n".join(
+        [f"### {heading}", "", "| key | holds | default | meaning |", "| --- | --- | --- | --- |", *rows, ""]
+    )
+
+
+def _key(name: str, field: FieldInfo) -> str:
+    node = _node(field)
+    if node is None:
+        return _OF_THE_MECHANISM[name]
+    return f"`{name}`, `{name}_{node.suffix}`" if isinstance(node, Key) and node.suffix else f"`{name}`"
+
+
+def _holds(field: FieldInfo) -> str:
+    node = _node(field)
+    if isinstance(node, Key):
+        of_mechanism = node.expected.endswith(" of") and not node.choices
+        return f"{node.describe()} those below" if of_mechanism else node.describe()
+    return "numbers" if node is None else "tables" if node.rows else "a table"
+
+
+def _default(field: FieldInfo) -> str:
+    if field.is_required() and _node(field):
+        return "required"
+    value = field.default
+    if isinstance(value, list | tuple) and value:
+        return f"`[{', '.join(map(_spelled, value))}]`"
+    return f"`{_spelled(value)}`" if isinstance(value, str | int | float) else ""
+
+
+def _spelled(value: object) -> str:
+    return f'"{value}"' if isinstance(value, str) else f"{value}"
+
+
+def _of_mechanisms() -> str:
+    """What each mechanism's own keys are called, with their SI units."""
+    lines = ["### Of each mechanism", "", "| mechanism | pose | `[geometry]` | `[inertia]` | `[ranges]` | margins |"]
+    lines.append("| --- " * 6 + "|")
+    for name, kind in MECHANISMS.items():
+        keys = study_table(kind, {}).keys
+        own = [_named(keys[table]) for table in ("geometry", "inertia", "ranges")]
+        lines.append(f"| {' | '.join([name, ', '.join(kind.pose_names), *own, ', '.join(kind.margins)])} |")
+    return "\n".join(lines) + "\n"
+
+
+def _named(table: Key | Table) -> str:
+    keys: Mapping[str, Key | Table] = table.keys if isinstance(table, Table) else {}
+    return ", ".join(
+        f"`{n}`" + (f" ({key.unit})" if key.unit else "") for n, key in keys.items() if isinstance(key, Key)
+    )
+
+
+def _node(field: FieldInfo) -> Key | Table | None:
+    return next((m for m in field.metadata if isinstance(m, Key | Table)), None)
+
+
+def _models(annotation: Any) -> list[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [model for part in get_args(annotation) for model in _models(part)]
+
+
+if __name__ == "__main__":
+    main()
