@@ -28,6 +28,7 @@ from studies.units import Dimension, Key, Table
 if TYPE_CHECKING:
     from kinematics import Mechanism
 
+_PER_JOINT = ("limits", "approach", "drive")  # tables of the trajectory
 _TURN = 2 * math.pi * (1 + 1e-12)  # converting degrees rounds
 
 
@@ -48,12 +49,12 @@ def study_table(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> Table:
             "optimise": table_of(Optimise).updated(optimise),
             "certify": table_of(Certify).updated({"margins": Key("a list out of", choices=mechanism.margins)}),
             "requirement": table_of(Requirement, rows=True).updated({"margin": margins}),
-            "trajectory": _trajectory_table(mechanism.pose_names),
+            "trajectory": _trajectory_table(mechanism.pose_names, len(mechanism.joint_names)),
         }
     )
 
 
-def _trajectory_table(pose_names: Sequence[str]) -> Table:
+def _trajectory_table(pose_names: Sequence[str], joints: int) -> Table:
     """The waypoints' coordinates, and only what the pose has of the cycle's angles; in a plane there is no cycle."""
     lacking = {
         "turn": not {"theta", "yaw"} & set(pose_names),
@@ -65,6 +66,7 @@ def _trajectory_table(pose_names: Sequence[str]) -> Table:
     waypoint = table_of(Waypoint, rows=True).updated(coordinates)
     path = table_of(WaypointPath).updated({"waypoint": waypoint})
     trajectory = table_of(Trajectory).updated({"path": path})
+    trajectory = trajectory.updated({name: _counted(trajectory.keys[name], joints) for name in _PER_JOINT})
     if "z" in pose_names:
         return trajectory.updated({"path": replace(path, other="[trajectory.cycle]"), "cycle": cycle})
     return Table({name: key for name, key in trajectory.keys.items() if name != "cycle"})
@@ -78,6 +80,7 @@ def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyP
         if shape(value) != field.shape or not all(field.allows(n, n) for n in _numbers(value)):
             yield ("geometry", name)
     yield from hardware_faults(data, mechanism)
+    yield from _uncounted(subtable(data, "trajectory"), len(mechanism.joint_names))
     if isinstance(data.get("region"), dict):
         yield from _region_faults(data["region"], mechanism)
     optimise = subtable(data, "optimise")
@@ -98,6 +101,22 @@ def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyP
     for i, margin in _rows(data, "requirement", "margin"):
         if margin not in mechanism.margins:
             yield ("requirement", i, "margin")
+
+
+def _counted(node: Key | Table, joints: int) -> Key | Table:
+    """With the number of joints in its words."""
+    if isinstance(node, Key):
+        return replace(node, expected=node.expected.replace("a joint", f"a joint of the {joints}"))
+    return node.updated({name: _counted(inner, joints) for name, inner in node.keys.items()})
+
+
+def _uncounted(trajectory: Mapping[str, Any], joints: int) -> Iterator[KeyPath]:
+    """Lists of one value a joint that are of another length; a range is a pair of numbers, not a list."""
+    for table in _PER_JOINT:
+        for name, value in subtable(trajectory, table).items():
+            several = isinstance(value, tuple) and (name != "position" or any(isinstance(v, tuple) for v in value))
+            if several and len(value) != joints:
+                yield ("trajectory", table, name)
 
 
 def _region_faults(region: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:

@@ -12,6 +12,7 @@ from design import Region
 from design.nlp import Problem
 from kinematics import Mechanism
 from studies import pipeline
+from studies.at_key import told_at_key
 from studies.committed_proofs import proof_rows
 from studies.load import load_study
 from studies.optimum import FILE, GIVEN, Optimum, optimum_of, read_optimum
@@ -32,7 +33,8 @@ def check_study(study_file: Path) -> list[Row]:
     made_for = _made_for(study, claimed)
     if not made_for.holds:
         return [made_for]  # an answer to another question
-    outcome = pipeline.run(study, claimed.robot(study), lambda _: None, compare_cycles=False)
+    with told_at_key(study_file):
+        outcome = pipeline.run(study, claimed.robot(study), lambda _: None, compare_cycles=False)
     return compare(claimed, outcome) + proofs(claimed, outcome, study_file.parent)
 
 

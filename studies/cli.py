@@ -66,7 +66,7 @@ def run(
     folder = out or Path("out") / asked.name
     beside = study_file(study).parent if commit else None
     require_writable_folders(folder, beside)
-    outcome = outcome_of(asked, None, prove=True)
+    outcome = outcome_of(study, asked, None, prove=True)
     files = write_run(outcome, folder, f"linkwright run {study}", beside)
     console.print_outcome(outcome, files, json)
 
@@ -83,7 +83,7 @@ def optimise(study: StudyArgument, json: JsonOption = False) -> None:
     asked = load(study).model_copy(update={"trajectory": None})
     if asked.optimise is None:
         raise InvalidValue(f"study {asked.name}", "no [optimise] table", "one with the variables to optimise")
-    console.print_outcome(outcome_of(asked, None), [], json)
+    console.print_outcome(outcome_of(study, asked, None), [], json)
 
 
 app.command("map")(map_)
@@ -148,6 +148,7 @@ def trajectory(
     """
     from kinematics.errors import InvalidValue
     from studies import console
+    from studies.at_key import told_at_key
     from studies.outputs import write_setpoints
     from studies.pipeline import require_on_cycle, time_cycle
     from studies.schema_trajectory import LAWS
@@ -165,7 +166,7 @@ def trajectory(
         raise InvalidValue(f"study {asked.name}", "no [trajectory] table", "one with the cycle to time")
     robot = robot_for(study, load(study), prototype)
     require_writable_folders(out)
-    with console.progress() as tell:
+    with told_at_key(study_file(study)), console.progress() as tell:
         tell("cycle")
         with_law = asked.trajectory.model_copy(update={"law": law or asked.trajectory.law})
         timing = time_cycle(asked.model_copy(update={"trajectory": with_law}), robot)
@@ -190,7 +191,7 @@ def report(
     folder = out or Path("out") / asked.name
     require_writable_folders(folder)
     known = committed_certificates(asked, study_file(study).parent, robot)
-    outcome = outcome_of(asked, robot, prove=True, known=known)
+    outcome = outcome_of(study, asked, robot, prove=True, known=known)
     files = write_report(outcome, folder, f"linkwright report {study}")
     console.print_outcome(outcome, files, json)
 
@@ -213,13 +214,15 @@ def export(
     """
     from kinematics.bodies import UNIFORM
     from studies import console
+    from studies.at_key import told_at_key
     from studies.outputs import write_model
 
     asked = load(study)
     robot = robot_for(study, asked, prototype)
     require_writable_folders(out.parent)
     rod_middle = None if rods is None else {"split": 0.0, "uniform": UNIFORM}[rods]
-    written = write_model(robot, asked, rod_middle, out)
+    with told_at_key(study_file(study)):
+        written = write_model(robot, asked, rod_middle, out)
     console.print_files([written], json)
 
 

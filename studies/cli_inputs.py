@@ -47,9 +47,10 @@ def robot_for(given: str, asked: Study, prototype: bool) -> Mechanism:
     return (None if prototype else committed(asked, study_file(given).parent)) or setup.robot_of(asked)
 
 
-def outcome_of(asked: Study, robot: Any, prove: bool = False, known: Any = None) -> Outcome:
+def outcome_of(given: str, asked: Study, robot: Any, prove: bool = False, known: Any = None) -> Outcome:
     from studies import console, pipeline
+    from studies.at_key import told_at_key
 
-    with console.progress() as tell:
+    with told_at_key(study_file(given)), console.progress() as tell:
         outcome = pipeline.run(asked, robot, tell)
         return pipeline.certified(outcome, known or {}, tell) if prove else outcome

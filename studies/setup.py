@@ -16,6 +16,7 @@ from kinematics import FviBounds, InvalidValue, Mechanism
 from kinematics.drives import to_actuators
 from kinematics.geometry import GeometryRecord
 from studies import schema_path, schema_trajectory
+from studies.at_key import refused_field, travelled
 from studies.errors import StudyError
 from studies.hardware import inertia_of, ranges_of
 from studies.inside import leaving
@@ -99,10 +100,10 @@ def require_cycle_inside(study: Study, file: FilePath) -> None:
     path = path_of(study.trajectory, names)
     if (found := leaving(region_of(study), path, names)) is not None:
         pose = ", ".join(f"{v:.4g}" for v in found.pose)
-        key = "path" if study.trajectory.cycle is None else "cycle"
+        read = read_toml(file)
+        key = travelled(read)
         expected = f"a {key} inside the region, {region_of(study)}"
-        problem = read_toml(file).problem(("trajectory", key), f"the pose ({pose}) on it", expected)
-        raise StudyError([problem])
+        raise StudyError([read.problem(("trajectory", key), f"the pose ({pose}) on it", expected)])
 
 
 def drive_of(drive: schema_trajectory.Drive) -> Drive:
@@ -129,10 +130,11 @@ def require_drive_files(study: Study, file: FilePath, asked_for: Sequence[str] |
             at_rest = _along(robot, path_of(asked, robot.pose_names), asked.period)
             drive_files("cycle", at_rest, asked.files, drive)
     except InvalidValue as error:
-        by = f" for --format {' --format '.join(asked_for)}" if asked_for else ""
+        by = f"for --format {' --format '.join(asked_for)}" if asked_for else ""
         key = ("trajectory",) if asked_for else ("trajectory", "files")
-        problem = read_toml(file).problem(key, f"{error.what} {error.found}{by}", error.expected)
-        raise StudyError([problem]) from error
+        read = read_toml(file)
+        found = f"{error.what} {error.found} {by}".strip()
+        raise StudyError([refused_field(read, error, by) or read.problem(key, found, error.expected)]) from error
 
 
 def _along(robot: Mechanism, path: Path, period: float) -> Setpoints:

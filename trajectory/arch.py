@@ -43,7 +43,9 @@ class Arch:
         """
         cycle = path.path if isinstance(path, Reversed) else path
         if not isinstance(cycle, AdeptCycle):
-            raise InvalidValue("path of the free law", type(path).__name__, "an Adept cycle, whose arch is known")
+            raise InvalidValue(
+                "path of the free law", "another one", "an Adept cycle: its arch says where the tool may go"
+            )
         return cls(cycle)
 
     def sides(self, x: ca.SX, y: ca.SX, z: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:

@@ -15,7 +15,7 @@ class RoughPath(LinkwrightError):
         self.at, self.what, self.found, self.bound = at, what, found, bound
         super().__init__(
             f"path at s = {at:.6g} m: {what} is {found:.4g}, expected at most {bound:.4g}; "
-            "split a path where it reverses and time each piece from rest to rest, round its corner, or refine the grid"
+            "let it stop where it reverses (a corner without a blend), or round the corner more"
         )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 
 from kinematics.errors import LinkwrightError
@@ -19,17 +20,24 @@ class CannotWrite(LinkwrightError):
 
 
 def require_writable(folder: Path) -> None:
-    """Make the folder and try it, before hours of work go into what it should hold.
+    """Try to make the folder and a file in it, before hours of work go into what it should hold; neither is left.
 
     Raises:
         CannotWrite: with the path and the system's reason.
     """
+    if folder.is_file():
+        raise CannotWrite(folder, "it is a file; expected a folder")
+    missing = [path for path in (folder, *folder.parents) if not path.exists()]
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
         raise CannotWrite(folder, error.strerror or str(error)) from error
+    finally:
+        for path in missing:
+            with suppress(OSError):  # not made, or in use by now
+                path.rmdir()
 
 
 def write_files(folder: Path, files: Mapping[str, str | bytes]) -> list[Path]:

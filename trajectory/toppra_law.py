@@ -65,7 +65,9 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     require_poses_of(robot, path)
     for name, why in _REFUSED.items():
         if getattr(limits, name) is not None:
-            raise InvalidValue(f"Limits {name} for the toppra law", getattr(limits, name), f"None: {why}")
+            raise InvalidValue(
+                f"Limits {name} for the toppra law", getattr(limits, name), f"no such limit, or another law: {why}"
+            )
     viscous = robot.inertia.drive_train.viscous
     if limits.torque is not None and np.any(np.asarray(viscous) > 0.0):
         raise InvalidValue("DriveTrain viscous for the toppra law", viscous, "0: its limits are linear in s'^2, not s'")

@@ -1,4 +1,4 @@
-"""The keys of a study file, out of its schema: `python -m tests.bench.study_keys` writes those in docs/study_file.md."""
+"""The keys of a study file, by its schema; `python -m tests.bench.study_keys` writes them into docs/study_file.md."""
 
 from __future__ import annotations
 

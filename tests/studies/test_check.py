@@ -151,13 +151,3 @@ def test_an_optimum_of_another_question_is_refused(small_run: SmallRun, tmp_path
     assert ended.returncode == 2
     assert "study_digest" in ended.stderr
     assert linkwright("check", tmp_path).returncode == 1
-
-
-@pytest.mark.parametrize("command", ["trajectory", "check", "report"])
-def test_a_study_without_its_optimum_is_told_how_it_comes_by_one(tmp_path: Path, command: str) -> None:
-    study = tmp_path / "study.toml"
-    study.write_text(SMALL)
-    ended = linkwright(command, study)
-    assert ended.returncode == 2
-    assert f"{tmp_path / 'optimum.toml'}: found no such file; expected the study's committed" in ended.stderr
-    assert f"`linkwright run {study} --commit` writes it, and --prototype does without" in ended.stderr

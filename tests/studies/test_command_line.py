@@ -117,10 +117,11 @@ def test_another_format_is_written_for_a_committed_optimum(tmp_path: Path) -> No
 
 def test_without_a_committed_optimum_nothing_else_is_taken_for_it(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(SMALL)
-    for command in ("trajectory", "report"):
+    for command in ("trajectory", "report", "check"):
         ended = linkwright(command, tmp_path)
         assert ended.returncode == 2
-        assert "optimum.toml" in ended.stderr
+        assert f"{tmp_path / 'optimum.toml'}: found no such file; expected the study's committed" in ended.stderr
+        assert f"`linkwright run {tmp_path / 'study.toml'} --commit` writes it, and --prototype does" in ended.stderr
 
 
 def test_an_approach_keeps_the_drives_limits_too(tmp_path: Path) -> None:
@@ -147,7 +148,10 @@ def test_one_study_serves_every_law() -> None:
 
 def test_an_unknown_law_and_a_law_without_its_limit_are_wrong_input(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(SMALL)
-    for law, said in (("fast", "expected one of jerk, toppra"), ("jerk", "Limits jerk for the jerk law")):
+    for law, said in (
+        ("fast", "expected one of jerk, toppra"),
+        ("jerk", "trajectory.limits.jerk: found nothing for the jerk law"),
+    ):
         ended = linkwright("trajectory", tmp_path, "--prototype", "--law", law)
         assert ended.returncode == 2
         assert said in ended.stderr
@@ -165,6 +169,18 @@ def test_an_output_folder_that_cannot_be_is_wrong_input(tmp_path: Path) -> None:
     ended = linkwright("trajectory", tmp_path, "--prototype", "--out", tmp_path / "file" / "out")
     assert ended.returncode == 2
     assert "cannot write" in ended.stderr
+    ended = linkwright("trajectory", tmp_path, "--prototype", "--out", tmp_path / "file")
+    assert ended.returncode == 2
+    assert "it is a file; expected a folder" in ended.stderr
+
+
+def test_a_run_that_fails_leaves_no_folder_behind(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(
+        SMALL.partition("[optimise]")[0] + '[[requirement]]\nmargin = "reach"\nat_least = 9\n'
+    )
+    ended = linkwright("run", tmp_path, "--out", tmp_path / "new" / "out")
+    assert ended.returncode == 1
+    assert [file.name for file in tmp_path.iterdir()] == ["study.toml"]
 
 
 def test_all_four_packages_belong_to_this_distribution() -> None:

@@ -61,9 +61,9 @@ def test_the_command_line_s_formats_take_the_study_s_place(tmp_path: Path) -> No
     ("text", "arguments", "says"),
     [
         (SMALL, ["--format", "rso2"], "found rso2; expected one of csv (all of each set-point, SI), ros2 (ROS 2"),
-        (SMALL, ["--format", "cia402"], ": trajectory: found Drive increments None for --format cia402; expected the"),
+        (SMALL, ["--format", "cia402"], "trajectory.drive.increments: found nothing for --format cia402; expected the"),
         (asking('["pmac"]', DRIVE.replace("'A'", "'joint'")), [], "letters out of X Y Z"),
-        (asking('["zaber"]', DRIVE.replace(", 'A'", "")), [], "4 names, one an actuator"),
+        (asking('["zaber"]', DRIVE.replace(", 'A'", "")), [], "a list of names, one a joint of the 4"),
         (asking('["csv"]', DRIVE.replace("encoder_gear = 9", "encoder_gear = 0")), [], "other than 0"),
         (
             asking('["cia402"]', DRIVE.replace("encoder_gear = 9", "encoder_gear = 90000")),

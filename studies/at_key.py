@@ -1,0 +1,78 @@
+"""Errors of what a study asks to be computed, told at the key of its file that asks for it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from kinematics import InvalidValue, LinkwrightError, UnreachablePose
+from studies.errors import KeyPath, Problem, StudyError, dotted, spelled
+from studies.toml_file import TomlFile, read_toml
+from trajectory import LimitsExceeded, PathRefused, RoughPath, TimingFailed
+
+_RECORDS: dict[str, KeyPath] = {
+    "Limits": ("trajectory", "limits"),
+    "Drive": ("trajectory", "drive"),
+    "DriveTrain": ("inertia", "drive_train"),
+}
+_OF_THE_PATH = (PathRefused, RoughPath, UnreachablePose)
+_OF_THE_LIMITS = (LimitsExceeded, TimingFailed)
+
+
+class StudyFailed(LinkwrightError):
+    """What a study asks for cannot be computed: `cause` says why, and its exit status stays."""
+
+    def __init__(self, file: TomlFile, path: KeyPath, cause: LinkwrightError) -> None:
+        self.file, self.key, self.cause = file.path, dotted(path), cause
+        self.exit_status = cause.exit_status
+        super().__init__(f"{file.path}:{file.line(path)}: {self.key}: {cause}")
+
+
+@contextmanager
+def told_at_key(study_file: Path) -> Iterator[None]:
+    """Raise the errors of paths, timing, limits and drives again, with their place in the study file.
+
+    Raises:
+        StudyError: a value of the file that a field of a record refuses.
+        StudyFailed: a path or limits that do not go with the rest.
+    """
+    try:
+        yield
+    except (InvalidValue, *_OF_THE_PATH, *_OF_THE_LIMITS) as error:
+        file = read_toml(study_file)
+        if isinstance(error, InvalidValue):
+            if (problem := refused_field(file, error)) is not None:
+                raise StudyError([problem]) from error
+            if not error.what.startswith("path "):
+                raise
+        at = "limits" if isinstance(error, _OF_THE_LIMITS) else travelled(file)
+        raise StudyFailed(file, ("trajectory", at), error) from error
+
+
+def refused_field(file: TomlFile, error: InvalidValue, why: str = "") -> Problem | None:
+    """What a record's field refuses, at its key; None where the error is of no record that a study fills.
+
+    `why` stands behind what was found.
+    """
+    record, _, field = error.what.partition(" ")
+    if record not in _RECORDS:
+        return None
+    name, _, of = field.partition(" ")
+    path = _spelling(file, (*_RECORDS[record], name))
+    try:
+        found = spelled(file.value(path))
+    except LookupError:
+        found = "nothing"
+    return file.problem(path, " ".join(filter(None, (found, of, why))), error.expected)
+
+
+def _spelling(file: TomlFile, path: KeyPath) -> KeyPath:
+    """The key as the file has it, with a suffix of a unit if that is so."""
+    known = (other for other in file.lines if other[:-1] == path[:-1] and str(other[-1]).startswith(f"{path[-1]}_"))
+    return path if path in file.lines else next(known, path)
+
+
+def travelled(file: TomlFile) -> str:
+    """The key under `trajectory` of what is travelled."""
+    return "cycle" if ("trajectory", "cycle") in file.lines else "path"
