@@ -48,9 +48,9 @@ def test_what_is_left_out_takes_its_default(write: Write, minimal_text: str) -> 
 
 def test_a_joint_speed_in_rpm_is_read_in_rad_per_s(write: Write, study_text: str) -> None:
     limits = "[trajectory.limits]\nspeed"
-    study = load_study(write(study_text.replace(f"{limits} = 20", f"{limits}_rpm = [60, 30]")))
+    study = load_study(write(study_text.replace(f"{limits} = 20", f"{limits}_rpm = [60, 30, 60, 30]")))
     assert study.trajectory is not None
-    assert study.trajectory.limits.speed == pytest.approx((2 * math.pi, math.pi))
+    assert study.trajectory.limits.speed == pytest.approx((2 * math.pi, math.pi) * 2)
 
 
 def test_a_study_is_called_after_its_folder(write: Write, study_text: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -122,15 +122,14 @@ def test_an_unknown_mechanism_carries_the_known_names() -> None:
 
 
 def test_limits_of_ranges_lines_and_rms_are_read_and_half_a_line_is_not(write: Write, study_text: str) -> None:
-    more = (
-        "jerk = 1e5\nposition = [[-1, 2], [0, 1]]\nstall_torque = 150\nno_load_speed_rpm = 300\nrms_torque = [70, 80]"
-    )
+    more = "jerk = 1e5\nposition = [[-1, 2], [0, 1], [0, 1], [0, 1]]\nstall_torque = 150\nno_load_speed_rpm = 300\n"
+    more += "rms_torque = [70, 80, 80, 80]"
     study = load_study(write(study_text.replace("jerk = 1e5", more)))
     assert study.trajectory is not None
     limits = limits_of(study.trajectory.limits)
-    assert limits.position == ((-1.0, 2.0), (0.0, 1.0))
+    assert limits.position == ((-1.0, 2.0), *[(0.0, 1.0)] * 3)
     assert (limits.stall_torque, limits.no_load_speed) == (150.0, pytest.approx(10 * math.pi))
-    assert limits.rms_torque == (70.0, 80.0)
+    assert limits.rms_torque == (70.0, 80.0, 80.0, 80.0)
     with pytest.raises(StudyError, match=r"trajectory.limits.no_load_speed: found nothing; expected .* stall_torque"):
         load_study(write(study_text.replace("jerk = 1e5", "stall_torque = 150")))
 
