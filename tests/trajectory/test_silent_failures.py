@@ -194,7 +194,7 @@ class Twitching:
             p, v, a = state
             state = np.array([p + h * (v + h * (a / 2 + h * j / 6)), v + h * (a + h * j / 2), a + h * j])
         k = np.clip(np.searchsorted(knots, s, side="right") - 1, 0, 4)
-        (p, v, a), h, j = np.array(states)[k].T, s - knots[k], third[k]
+        (p, v, a), h, j = np.moveaxis(np.array(states)[k], -1, 0), s - knots[k], third[k]
         theta = (p + h * (v + h * (a / 2 + h * j / 6)), v + h * (a + h * j / 2), a + h * j, j, 0.0 * s)
         x = (s - 0.1, 1.0 + 0.0 * s, *[0.0 * s] * 3)
         z = (0.0 * s - 0.8, *[0.0 * s] * 4)
