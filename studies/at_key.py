@@ -9,7 +9,7 @@ from pathlib import Path
 from kinematics import InvalidValue, LinkwrightError, UnreachablePose
 from studies.errors import KeyPath, Problem, StudyError, dotted, spelled
 from studies.toml_file import TomlFile, read_toml
-from trajectory import LimitsExceeded, PathRefused, RoughPath, TimingFailed
+from trajectory import LimitsExceeded, PathBeyondLimit, PathRefused, RoughPath, TimingFailed
 
 _RECORDS: dict[str, KeyPath] = {
     "Limits": ("trajectory", "limits"),
@@ -39,6 +39,9 @@ def told_at_key(study_file: Path) -> Iterator[None]:
     """
     try:
         yield
+    except PathBeyondLimit as error:
+        file = read_toml(study_file)
+        raise StudyFailed(file, _spelling(file, ("trajectory", "limits", error.limit)), error) from error
     except (InvalidValue, *_OF_THE_PATH, *_OF_THE_LIMITS) as error:
         file = read_toml(study_file)
         if isinstance(error, InvalidValue):

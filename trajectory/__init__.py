@@ -14,6 +14,7 @@ from trajectory.emergency_stop import EmergencyStop, emergency_stop
 from trajectory.errors import (
     InvalidPath,
     LimitsExceeded,
+    PathBeyondLimit,
     PathRefused,
     RoughPath,
     SetpointFileError,
@@ -71,6 +72,7 @@ __all__ = [
     "Move",
     "Part",
     "Path",
+    "PathBeyondLimit",
     "PathCertificate",
     "PathMotion",
     "PathRefused",

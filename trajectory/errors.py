@@ -45,6 +45,34 @@ class PathRefused(LinkwrightError):
         super().__init__(f"{where}: the {margin} margin{of_limb} is {found}; expected above 0")
 
 
+class PathBeyondLimit(LinkwrightError):
+    """A path passes a pose that breaks a limit however it is travelled.
+
+    `limit` is the field of the limits, `at` the arc length [m], `found` the joint's value beyond `allowed`, SI.
+    """
+
+    exit_status = 1
+
+    def __init__(
+        self,
+        limit: str,
+        joint: str,
+        at: float,
+        pose: Sequence[float],
+        found: float,
+        allowed: tuple[float, float],
+        unit: str,
+    ) -> None:
+        self.limit, self.joint, self.at, self.found, self.allowed = limit, joint, at, found, allowed
+        self.pose = tuple(float(v) for v in pose)
+        where = f"path at s = {at:.6g} m, pose ({', '.join(f'{v:.6g}' for v in self.pose)})"
+        quantity = "position" if limit == "position" else "torque"
+        super().__init__(
+            f"{where}: the {quantity} of {joint} is {found:.6g} {unit}; "
+            f"expected from {allowed[0]:.6g} to {allowed[1]:.6g}"
+        )
+
+
 class TimingFailed(LinkwrightError):
     """No time law was found for what was asked."""
 
@@ -52,7 +80,7 @@ class TimingFailed(LinkwrightError):
 
     def __init__(self, law: str, asked: Mapping[str, object], found: str) -> None:
         self.law, self.asked, self.found = law, dict(asked), found
-        what = ", ".join(f"{name} {value}" for name, value in self.asked.items())
+        what = ", ".join(f"{name} {value}" for name, value in self.asked.items() if name != "path")
         super().__init__(f"{law} law: {found}; asked for {what}")
 
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics import InvalidValue, Mechanism
+from trajectory.at_rest import require_possible
 from trajectory.errors import TimingFailed
 from trajectory.jerk_numbers import Numbers, Scale, numbers_of
 from trajectory.jerk_problem import Row, Shape, Variables, solver_of
@@ -53,6 +54,7 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     Raises:
         InvalidValue: too few intervals, no jerk limit, an impossible payload, or another kind of pose.
         RoughPath, UnreachablePose: as `time_optimal`.
+        PathBeyondLimit: a position beyond its range, or a weight beyond the torque at an end.
         TimingFailed: the solver did not converge on the first, few knots.
     """
     if intervals < LEAST_INTERVALS:
@@ -63,6 +65,7 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     require_poses_of(robot, path)
     require_smooth(path, grid)
     robot.require_reachable(path.evaluate(grid, 0)[0])
+    require_possible(robot, path, limits, payload, grid)
     asked = {**limits.as_dict(), "payload": payload, "intervals": intervals, "path": path.as_dict()}
     problem = _Problem(robot, path, limits, payload, asked)
     coarse = problem.solved(polynomial_start(robot, path, limits, payload, max(intervals // _FEWER, LEAST_INTERVALS)))

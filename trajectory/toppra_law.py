@@ -28,6 +28,7 @@ from toppra.interpolator import AbstractGeometricPath
 from kinematics import InvalidValue, Mechanism
 from kinematics.dynamics import inverse_dynamics
 from kinematics.motion import actuator_motion
+from trajectory.at_rest import require_possible
 from trajectory.errors import TimingFailed
 from trajectory.limits import Limits
 from trajectory.path import Array, Path, places, require_poses_of, require_smooth
@@ -60,7 +61,8 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
             negative payload, or another kind of pose.
         RoughPath: the path has a cusp or a kink.
         UnreachablePose: a limb cannot reach a pose of the path; the limb and its margin are named.
-        TimingFailed: there is no law within the limits, as where the weight alone is beyond the torque.
+        PathBeyondLimit: a position beyond its range, or a weight beyond the torque at an end.
+        TimingFailed: there is no law within the limits.
     """
     require_poses_of(robot, path)
     for name, why in _REFUSED.items():
@@ -79,6 +81,7 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     require_smooth(path, path.length * grid)
     derivatives = [d * path.length**k for k, d in enumerate(path.evaluate(path.length * grid, 2))]
     robot.require_reachable(derivatives[0])
+    require_possible(robot, path, limits, payload, path.length * grid)
     bound, rows = _path_limits(robot, derivatives, limits, payload)
     asked = {**limits.as_dict(), "payload": payload, "intervals": intervals, "path": path.as_dict()}
     speed = _solve(grid, bound, rows, asked)

@@ -230,12 +230,6 @@ def test_what_it_cannot_do_is_refused_by_name(robot: Heli4, path: AdeptCycle, li
         jerk_limited(robot, path, replace(SMOOTH, **limit), payload, intervals)
 
 
-def test_a_torque_limit_below_the_weight_has_no_law(robot: Heli4, path: AdeptCycle) -> None:
-    with pytest.raises(TimingFailed, match="no solution") as caught:
-        jerk_limited(robot, path, replace(SMOOTH, torque=2.0), 1.0, QUICK)
-    assert caught.value.asked["torque"] == 2.0
-
-
 def test_an_answer_that_has_not_converged_is_no_answer(
     robot: Heli4, path: AdeptCycle, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:

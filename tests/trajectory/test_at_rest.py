@@ -1,0 +1,66 @@
+"""What a path asks for at any speed is told before it is timed: joint, place, value and range."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from kinematics import Heli4
+from trajectory import AdeptCycle, Limits, PathBeyondLimit, RoundedPath, TimingFailed, jerk_limited, time_optimal
+from trajectory.motion import motion_of
+
+Law = Callable[..., object]
+LAWS = [time_optimal, jerk_limited]
+
+
+def limits(law: Law, **others: object) -> Limits:
+    return Limits(speed=20.0, jerk=1e5 if law is jerk_limited else None, **others)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_weight_beyond_the_torque_at_an_end_is_refused_with_its_torque(
+    robot: Heli4, path: AdeptCycle, law: Law
+) -> None:
+    with pytest.raises(PathBeyondLimit, match=r"torque of q1 is -6.\d+ N m at rest; expected from -2 to 2") as caught:
+        law(robot, path, limits(law, torque=2.0), 1.0)
+    assert (caught.value.limit, caught.value.at) == ("torque", path.length)
+    slow = time_optimal(robot, path, Limits(speed=20.0), 1.0).stretched(1e8)
+    end = motion_of(robot, slow.at(np.array([slow.duration])), 1.0).torque[0]
+    assert abs(caught.value.found) == pytest.approx(np.abs(end).max(), rel=1e-6)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_torque_just_above_the_weight_at_both_ends_is_timed(robot: Heli4, path: AdeptCycle, law: Law) -> None:
+    with pytest.raises(PathBeyondLimit) as caught:
+        law(robot, path, limits(law, torque=2.0), 1.0)
+    assert law(robot, path, limits(law, torque=1.001 * abs(caught.value.found)), 1.0)
+
+
+def test_a_stall_torque_below_the_weight_is_refused(robot: Heli4, path: AdeptCycle) -> None:
+    with pytest.raises(PathBeyondLimit, match="at rest") as caught:
+        jerk_limited(robot, path, limits(jerk_limited, stall_torque=2.0, no_load_speed=30.0), 1.0)
+    assert caught.value.limit == "stall_torque"
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_weight_that_only_the_middle_cannot_bear_is_for_the_law_to_find(robot: Heli4, law: Law) -> None:
+    poses = ((0.0, 0.0, -0.85, 0.0), (0.35, 0.0, -0.75, 0.0), (0.35, 0.0, -0.65, 0.0))
+    way = RoundedPath(robot.pose_names, poses, (0.05,))
+    with pytest.raises(TimingFailed, match="no solution") as caught:
+        law(robot, way, limits(law, torque=6.351), 1.0)
+    assert caught.value.asked["path"] == way.as_dict()
+    assert "blends" not in str(caught.value)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_joint_beyond_its_range_is_named_where_it_is_furthest(robot: Heli4, path: AdeptCycle, law: Law) -> None:
+    joints = robot.inverse(path.evaluate(np.linspace(0.0, path.length, 20_001), 0)[0])
+    ranges = np.stack([joints.min(axis=0) - 0.01, joints.max(axis=0) + 0.01], axis=-1)
+    assert law(robot, path, limits(law, position=ranges), 1.0)
+    ranges[2, 1] -= 0.011
+    with pytest.raises(PathBeyondLimit, match=r"s = .*, pose \(.*: the position of q3 is .* rad; expected") as caught:
+        law(robot, path, limits(law, position=ranges), 1.0)
+    assert caught.value.found == pytest.approx(joints[:, 2].max(), abs=1e-6)
+    assert robot.inverse(np.array(caught.value.pose))[2] == pytest.approx(caught.value.found, abs=1e-12)
