@@ -67,7 +67,12 @@ def _with_waypoints(study: Study, file: TomlFile, pose_names: tuple[str, ...]) -
         found = "neither a file nor waypoints" if path.file is None else "a file and waypoints"
         raise StudyError([file.problem(key, found, "one of the two")])
     if path.file is not None:
-        read = read_waypoints(file.path.parent / path.file, pose_names)
+        beside = file.path.parent / path.file
+        if beside.suffix.lower() != ".csv" or not beside.is_file():
+            what = "no such file" if not beside.exists() else "no CSV file"
+            found = f"{spelled(path.file)}, {what}"
+            raise StudyError([file.problem((*key, "file"), found, "a .csv file of waypoints beside the study")])
+        read = read_waypoints(beside, pose_names)
         rows = zip(read.poses, (0.0, *read.blends, 0.0), strict=True)
         waypoints = tuple(
             Waypoint(coordinates={n: v for n, v in zip(pose_names, pose, strict=True) if v is not None}, blend=blend)
@@ -78,8 +83,10 @@ def _with_waypoints(study: Study, file: TomlFile, pose_names: tuple[str, ...]) -
     try:
         path_of(study.trajectory, pose_names)
     except InvalidPath as error:
-        at = (*key, "waypoint", error.pose - 1)
-        raise StudyError([file.problem(at, f"{error.field} {error.found}", error.expected)]) from error
+        row = file.data["trajectory"]["path"]["waypoint"][error.pose - 1]
+        own = (f"{name} = {spelled(value)}" for name, value in row.items() if name.split("_")[0] == error.field)
+        found = next(own, f"{error.field} {error.found}")
+        raise StudyError([file.problem((*key, "waypoint", error.pose - 1), found, error.expected)]) from error
     return study
 
 

@@ -17,7 +17,9 @@ from trajectory.errors import InvalidPath, WaypointFileError
 from trajectory.rounded import RoundedPath
 
 Column = tuple[str, str]  # coordinate and unit suffix, "" for SI
-Row = tuple[int, dict[str, float | None]]  # line, values in SI by coordinate
+Row = tuple[
+    int, dict[str, float | None], dict[str, tuple[str, str]]
+]  # line, SI values and (column, cell) by coordinate
 _BLEND = "blend"
 
 
@@ -42,7 +44,7 @@ def read_waypoints(file: FilePath | str, pose_names: Sequence[str]) -> RoundedPa
     if not lines:
         raise WaypointFileError(file, 1, "", "no header", f"a header with {', '.join(pose_names)}")
     columns = _header(file, *lines[0], pose_names)
-    rows = [(number, _row(file, number, line, columns)) for number, line in lines[1:]]
+    rows = [_row(file, number, line, columns) for number, line in lines[1:]]
     return _path(file, rows, tuple(pose_names))
 
 
@@ -72,17 +74,19 @@ def _header(file: FilePath, number: int, line: str, pose_names: Sequence[str]) -
     return columns
 
 
-def _row(file: FilePath, number: int, line: str, columns: Sequence[Column]) -> dict[str, float | None]:
+def _row(file: FilePath, number: int, line: str, columns: Sequence[Column]) -> Row:
     cells = _cells(file, number, line)
     if len(cells) != len(columns):
         raise WaypointFileError(file, number, "", f"{len(cells)} cells", f"{len(columns)}, as in the header")
     values: dict[str, float | None] = {}
+    spelled = {}
     for cell, (name, suffix) in zip(cells, columns, strict=True):
+        spelled[name] = (f"{name}_{suffix}" if suffix else name, cell)
         try:
             values[name] = _in_si(cell, suffix) if cell else None
         except ValueError:
-            raise WaypointFileError(file, number, name, cell, "a finite number") from None
-    return values
+            raise WaypointFileError(file, number, spelled[name][0], cell, "a finite number") from None
+    return number, values, spelled
 
 
 def _in_si(cell: str, suffix: str) -> float:
@@ -99,12 +103,14 @@ def _path(file: FilePath, rows: Sequence[Row], pose_names: tuple[str, ...]) -> R
     if len(rows) < 2:
         line = rows[-1][0] if rows else 1
         raise WaypointFileError(file, line, "", f"{len(rows)} poses", "at least 2")
-    for number, values in (rows[0], rows[-1]):
+    for number, values, spelled in (rows[0], rows[-1]):
         if values.get(_BLEND):
-            raise WaypointFileError(file, number, _BLEND, str(values[_BLEND]), "nothing: the path ends here")
-    poses = tuple(tuple(values[name] for name in pose_names) for _, values in rows)
-    blends = tuple(values.get(_BLEND) or 0.0 for _, values in rows[1:-1])
+            raise WaypointFileError(file, number, *spelled[_BLEND], "nothing: the path ends here")
+    poses = tuple(tuple(values[name] for name in pose_names) for _, values, _ in rows)
+    blends = tuple(values.get(_BLEND) or 0.0 for _, values, _ in rows[1:-1])
     try:
         return RoundedPath(pose_names, poses, blends)
     except InvalidPath as error:
-        raise WaypointFileError(file, rows[error.pose - 1][0], error.field, str(error.found), error.expected) from error
+        number, _, spelled = rows[error.pose - 1]
+        column, cell = spelled.get(error.field, ("", f"the {error.field} {error.found}"))
+        raise WaypointFileError(file, number, column, cell or "nothing", error.expected) from error

@@ -171,6 +171,17 @@ def test_a_fault_is_told_with_its_key(
     assert problems[0].line is not None
 
 
+@pytest.mark.parametrize(("name", "found"), [("none.csv", "no such file"), ("study.toml", "no CSV file")])
+def test_a_file_of_waypoints_that_cannot_be_is_told_at_its_key(tmp_path: Path, name: str, found: str) -> None:
+    with pytest.raises(StudyError, match=rf'trajectory\.path\.file: found "{name}", {found}; expected a \.csv file'):
+        load_study(written(tmp_path, f'[trajectory.path]\nfile = "{name}"\npayload = 1.0\n'))
+
+
+def test_a_blend_that_does_not_fit_is_told_as_the_study_spells_it(tmp_path: Path) -> None:
+    with pytest.raises(StudyError, match=r"path\.waypoint: found blend_mm = 101; expected"):
+        load_study(written(tmp_path, ROWS.replace("blend_mm = 30", "blend_mm = 101")))
+
+
 def test_an_unknown_mechanism_is_told_without_faults_in_its_waypoints(tmp_path: Path) -> None:
     with pytest.raises(StudyError) as caught:
         load_study(written(tmp_path, ROWS, ("Heli5", SCHOENFLIES)))
