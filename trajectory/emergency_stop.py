@@ -23,10 +23,6 @@ from trajectory.timed import TimedMotion
 from trajectory.timing import TimeLaw
 from trajectory.verification import Verification, verify
 
-MARGINS = (
-    4e-3,
-    2e-2,
-)  # of the limits, for the jerk-limited pace to keep them between its knots too; the first that does
 _MARGINS = (4e-3, 1e-2, 3e-2)  # of the limits: the first with which they are proved to hold between the knots too
 _BRAKING = ("acceleration", "torque", "tool_acceleration", "jerk")
 

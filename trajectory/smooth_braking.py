@@ -18,11 +18,11 @@ import math
 import numpy as np
 
 from kinematics import Mechanism
-from trajectory.braking import with_knots
+from trajectory.braking import steps_of, with_knots
 from trajectory.errors import LimitsExceeded, TimingFailed
 from trajectory.limits import Limits
 from trajectory.motion import motion_of
-from trajectory.paced import one_sided
+from trajectory.paced import SAME
 from trajectory.path import Array
 from trajectory.smooth_braking_rows import braking_rows
 from trajectory.smooth_pace import INSTANTS, Pace, least_pace
@@ -78,9 +78,7 @@ def _least(
     robot: Mechanism, timed: TimedMotion, near: Pace, limits: Limits, payload: float, margin: float
 ) -> Pace | None:
     """The pace on the knots of a guess."""
-    tau = near.tau
-    instants = one_sided(tau, tau[:-1, None] + np.diff(tau)[:, None] * INSTANTS)
-    rows = braking_rows(robot, motion_of(robot, timed.at(instants), payload), limits, payload)
+    rows = braking_rows(robot, motion_of(robot, steps_of(timed, near.tau, INSTANTS), payload), limits, payload)
     return least_pace(*rows, near, margin)
 
 
@@ -135,7 +133,7 @@ def _to_rest(tau: Array, second: Array, times: Array, speeds: Array, to_go: floa
     """The law up to its last knot so far, and from there to rest at a constant jerk, with a knot at each tau."""
     k = times.size - 1
     rest, jerk, last = tau[k] + to_go, 0.5 * second[k] ** 2 / speeds[k], -2.0 * speeds[k] / second[k]
-    between = tau[k + 1 :][tau[k + 1 :] < rest - _ROUNDING * (rest - tau[0])]
+    between = tau[k + 1 :][tau[k + 1 :] < rest * (1.0 - SAME)]
     left = np.append(np.cbrt(6.0 * (rest - between) / jerk), 0.0)  # time
     return _joined(
         np.append(times, times[k] + last - left),
