@@ -5,10 +5,10 @@ constant in each interval. What it makes small is the mean of x = tau'^2 over th
 something is met. Without limits of the jerk the pace of `braking` has the least, as it has the least x everywhere.
 
 The limits are linear in x and tau'' once their tangents stand (`smooth_braking_rows`): a linear programme finds the
-pace, new tangents at its answer the next one, until x falls no more (`smooth_pace`). The motion itself keeps the rows
-of the first programme, so there is an answer from any instant of any motion within its limits. The knots then stand
-where that pace needs them, closer together towards where it rests, and all is done again until that place
-stays. The answer is a local one, on its knots.
+pace, new tangents at its answer the next one, until x falls no more (`smooth_pace`). A motion within its limits keeps
+the rows of the first programme, so that one has an answer from any instant. The knots then stand where its pace needs
+them, closer together towards where it rests, and all is done again until that place stays. That it does is not sure,
+nor that the limits hold between the knots. The answer is a local one.
 """
 
 from __future__ import annotations

@@ -109,7 +109,8 @@ def _programme(rows: LinearRows, active: Array, pace: Array, tau: Array) -> Pace
     low, high = np.zeros(2 * n + 2), np.concatenate([np.ones(n + 1), [0.0], np.full(n - 1, np.inf), [0.0]])
     low[0] = 1.0
     mean = np.concatenate([np.append(steps, 0.0) + np.append(0.0, steps), np.zeros(n + 1)]) / 2.0
-    bounds, options = np.stack([low, high], axis=1), {"primal_feasibility_tolerance": _KEPT}
+    bounds = np.stack([low, high], axis=1)
+    options = {"primal_feasibility_tolerance": _KEPT, "presolve": False}  # which now and then ends in no status at all
     answer = linprog(mean, limited, rows.most[active], falls, np.zeros(n), bounds, "highs-ds", options=options)
     if answer.status != 0:
         return None
