@@ -38,6 +38,7 @@ _ROUNDS = 12
 _SLOW = 0.05  # pace from which a constant jerk leads to rest
 _SETTLED = 0.03  # of the way, by which it may differ from what the knots were made for
 _ROUNDING = 1e-9  # of the way, a limit or the largest acceleration
+_FIRST = 1e-3  # of the first step: a knot of the motion that is closer to the start would be too much for a programme
 _HIGHER = 0.001  # a guess on new knots over the answer on the old ones: a tangent at too low an x forbids more
 
 
@@ -59,13 +60,13 @@ def smooth_braking(
     coarse = np.linspace(start, timed.duration, COARSE + 1)
     before = _least(robot, timed, Pace(coarse, np.ones_like(coarse), np.zeros_like(coarse)), limits, payload, margin)
     for _ in range(_ROUNDS):
-        law = None if before is None else _law(before)
+        law = None if before is None else _law(timed, before)
         if before is None or law is None:
             break
         knots, last = _knots(timed, start, law.position[-1])
         guess = np.minimum(np.interp(knots, before.tau, before.x) + _HIGHER, 1.0)
         pace = _least(robot, timed, Pace(knots, guess, np.interp(knots, before.tau, before.b)), limits, payload, margin)
-        found = None if pace is None else _law(pace)
+        found = None if pace is None else _law(timed, pace)
         way = law.position[-1] - start
         rest = math.inf if found is None else found.position[-1]
         if found is not None and rest <= last and abs(rest - law.position[-1]) <= _SETTLED * way:
@@ -105,13 +106,14 @@ def _knots(timed: TimedMotion, start: float, rest: float) -> tuple[Array, float]
     even = even[even <= timed.duration]
     last = even[-1]
     knots = with_knots(timed, even, 0.2 * np.append(np.diff(even), last - even[-2]))
+    knots = knots[(knots == start) | (knots > start + _FIRST * (even[1] - start)) & (knots <= last)]
     later = np.linspace(last, timed.duration, _LATER + 1)[1:] if last < timed.duration else even[:0]
-    return np.append(knots[knots <= last], later), float(last)
+    return np.append(knots, later), float(last)
 
 
-def _law(pace: Pace) -> TimeLaw | None:
+def _law(timed: TimedMotion, pace: Pace) -> TimeLaw | None:
     """The law with these tau'' at its knots, down to the pace from which a constant jerk leads to rest."""
-    tau, second = pace.tau, -pace.b
+    tau, second = _with_first_knots(timed, pace)
     times, speeds = [0.0], [1.0]
     for k, step in enumerate(np.diff(tau)):
         v, mean = speeds[k], (2.0 * second[k] + second[k + 1]) / 3.0
@@ -127,6 +129,14 @@ def _law(pace: Pace) -> TimeLaw | None:
         times.append(times[-1] + h)
         speeds.append(after)
     return _joined(np.array(times), tau, np.array(speeds), second)
+
+
+def _with_first_knots(timed: TimedMotion, pace: Pace) -> tuple[Array, Array]:
+    """Knots and tau'' there, with the motion's own in the first step too: tau'' grows from 0 at one rate in time."""
+    start, first = pace.tau[:2]
+    missed = timed.times[(timed.times > start + SAME * timed.duration) & (timed.times < first)]
+    share = (missed - start) / (first - start) * 0.5 * (1.0 + math.sqrt(pace.x[1]))  # of the step's time
+    return np.insert(pace.tau, 1, missed), -np.insert(pace.b, 1, share * pace.b[1])
 
 
 def _to_rest(tau: Array, second: Array, times: Array, speeds: Array, to_go: float) -> TimeLaw:
