@@ -52,7 +52,7 @@ def with_knots(timed: TimedMotion, even: Array, least: float | Array) -> Array:
 
     Args:
         timed, even: the motion and the times [s].
-        least: how far a time is from each knot at least; one number or (k,) [s].
+        least: how far from each knot they are at least; one number or (k,) [s].
     """
     least = np.broadcast_to(least, even.shape)
     inside = timed.times[1:-1]

@@ -26,7 +26,7 @@ class PacedMotion:
         pace: tau in time; each knot of the motion that it passes is one of its own.
 
     Raises:
-        InvalidValue: the pace leaves the motion's time, or passes a knot of the motion between two of its own.
+        InvalidValue: the pace leaves the motion's time, turns back, or passes a knot of the motion between two of its own.
     """
 
     motion: TimedMotion
@@ -34,8 +34,9 @@ class PacedMotion:
 
     def __post_init__(self) -> None:
         tau, knots, same = self.pace.position, self.motion.times, SAME * self.motion.duration
-        if tau[0] < -same or tau[-1] > self.motion.duration + same:
-            raise InvalidValue("pace of a motion", (tau[0], tau[-1]), f"inside (0, {self.motion.duration:.9g}) s")
+        if tau[0] < -same or tau[-1] > self.motion.duration + same or (np.diff(tau) < 0.0).any():
+            found = f"knots from {tau[0]:.9g} to {tau[-1]:.9g} s of the motion's time"
+            raise InvalidValue("pace of a motion", found, f"rising ones in [0, {self.motion.duration:.9g}] s")
         passed = knots[(knots > tau[0] + same) & (knots < tau[-1] - same)]
         after = np.searchsorted(tau, passed)
         hidden = passed[np.minimum(tau[after] - passed, passed - tau[after - 1]) > same]

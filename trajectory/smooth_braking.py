@@ -104,7 +104,7 @@ def _knots(timed: TimedMotion, start: float, rest: float) -> tuple[Array, float]
     beyond = to_go[to_go <= _BEYOND][-2::-1]
     even = rest + (rest - start) * np.concatenate([-(to_go**2), beyond**2])
     even = even[even <= timed.duration]
-    last = even[-1]
+    even[0], last = start, even[-1]  # not to rounding alone
     knots = with_knots(timed, even, 0.2 * np.append(np.diff(even), last - even[-2]))
     knots = knots[(knots == start) | (knots > start + _FIRST * (even[1] - start)) & (knots <= last)]
     later = np.linspace(last, timed.duration, _LATER + 1)[1:] if last < timed.duration else even[:0]
