@@ -26,7 +26,8 @@ class PacedMotion:
         pace: tau in time; each knot of the motion that it passes is one of its own.
 
     Raises:
-        InvalidValue: the pace leaves the motion's time, turns back, or passes a knot of the motion between two of its own.
+        InvalidValue: the pace leaves the motion's time, turns back, or passes a knot of the motion between two of its
+            own.
     """
 
     motion: TimedMotion
