@@ -26,7 +26,7 @@ class Leaving:
     """Where a way is outside the region, or could not be proved not to be.
 
     Attributes:
-        pose: (n,) the one furthest out.
+        pose: (n,) the one furthest out, of the ends and middles of the intervals looked at.
         room: how far it is inside, so negative [m or rad].
     """
 
@@ -41,10 +41,12 @@ def leaving(region: Region, way: Way, names: Sequence[str]) -> Leaving | None:
     found: Leaving | None = None
     while low.size:
         middle = 0.5 * low + 0.5 * high
-        box, (poses,) = way.enclose(low, high), way.evaluate(middle, 0)
+        box, (poses,) = way.enclose(low, high), way.evaluate(np.stack([low, middle, high]), 0)
         outermost = np.where(np.abs(box.low) > np.abs(box.high), box.low, box.high)
         least = np.min([region.room(corner, names) for corner in (box.low, box.high, outermost)], axis=0)
-        room = region.room(poses, names)
+        rooms = region.room(poses, names)
+        worst, one = rooms.argmin(axis=0), np.arange(low.size)
+        room, poses = rooms[worst, one], poses[worst, one]
         stuck = (high - low <= _SMALLEST * way.length) & ~(least >= -TOLERANCE)
         outside = ~(room >= -TOLERANCE) | stuck
         if outside.any():

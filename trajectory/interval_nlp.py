@@ -8,7 +8,6 @@ written out once and laid block by block: far smaller than what differentiating 
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,6 +15,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from kinematics.threads import CORES
 from trajectory.path import Array
 
 
@@ -53,7 +53,7 @@ class IntervalProgram:
     def __init__(self, constraints: IntervalConstraints, intervals: int) -> None:
         self._constraints, self._intervals = constraints, intervals
         self._size = constraints.start.numel()
-        count, size, cores = intervals, self._size, os.cpu_count() or 1
+        count, size, cores = intervals, self._size, CORES
         unknowns = ca.MX.sym("unknowns", count * size + 3 * size // 4 + 1)
         starts = ca.reshape(unknowns[: count * size], size, count)
         durations = ca.repmat(unknowns[-1], 1, count)

@@ -48,12 +48,12 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
         path: smooth to its third derivative, without a cusp.
         limits: of joints and tool; all are kept but the position, which the path alone decides.
         payload: mass at the tool [kg].
-        intervals: of linear s''', at least 20.
+        intervals: of linear s''', at least 20; the law has fewer where the solver finds no answer on so many.
 
     Raises:
         InvalidValue: too few intervals, no jerk limit, an impossible payload, or another kind of pose.
         RoughPath, UnreachablePose: as `time_optimal`.
-        TimingFailed: the solver did not converge.
+        TimingFailed: the solver did not converge on the first, few knots.
     """
     if intervals < LEAST_INTERVALS:
         raise InvalidValue("intervals of the jerk law", intervals, f"at least {LEAST_INTERVALS}")
@@ -67,20 +67,40 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     problem = _Problem(robot, path, limits, payload, asked)
     coarse = problem.solved(polynomial_start(robot, path, limits, payload, max(intervals // _FEWER, LEAST_INTERVALS)))
     over = np.max([r - 1.0 for name, r in problem.excess(coarse.timed).items() if name != _RMS], axis=0)
-    return _tightened(problem, problem.solved(denser_start(coarse.timed.law, over, intervals))).timed
+    return _tightened(problem, _refined(problem, coarse, over, intervals)).timed
+
+
+def _refined(problem: _Problem, coarse: _Answer, over: Array, intervals: int) -> _Answer:
+    """On so many knots or, where the solver finds no answer on them, on half of them, down to the first ones."""
+    while intervals > over.size:
+        try:
+            return problem.solved(denser_start(coarse.timed.law, over, intervals))
+        except TimingFailed:
+            intervals //= 2
+    return coarse
 
 
 def _tightened(problem: _Problem, answer: _Answer) -> _Answer:
     """Solved again and again, on the same knots, until the limits are kept between the stations too, or nearly."""
     found = problem.excess(answer.timed)
     tight, last = {name: np.ones_like(ratio) for name, ratio in found.items()}, found
+    best, least = answer, _worst(found)
     for _ in range(ROUNDS):
-        if max(ratio.max() for ratio in found.values()) <= _CLOSE:
+        if least <= _CLOSE:
             break
         tight = {name: tight[name] * _power(ratio, last[name]) for name, ratio in found.items()}
-        answer, last = problem.solved_again(answer, tight), found
+        try:
+            answer, last = problem.solved_again(answer, tight), found
+        except TimingFailed:
+            break  # the best one so far is for the repair
         found = problem.excess(answer.timed)
-    return answer
+        if _worst(found) < least:
+            best, least = answer, _worst(found)
+    return best
+
+
+def _worst(excess: Excess) -> float:
+    return max(float(ratio.max()) for ratio in excess.values())
 
 
 def _power(ratio: Array, last: Array) -> Array:

@@ -35,14 +35,14 @@ from trajectory.path import Array
 _OPTIONS: dict[str, Any] = {
     "print_level": 0,
     "sb": "yes",
-    "max_iter": 300,
+    "max_iter": 150,
     "tol": 1e-9,
     "constr_viol_tol": 1e-11,
     "acceptable_iter": 0,  # no answer that is almost one
     "bound_relax_factor": 0.0,
 }
 _CLOSE: dict[str, Any] = {"mu_init": 1e-4, "bound_push": 1e-3}  # a start that is close to the answer
-_JUMPS = 1e-8  # of the duration, about: what jumps of the jerk cost, where no limit says what it is
+_JUMPS = 1e-6  # of the duration, about: what jumps of the jerk cost, where no limit says what it is
 _PUSHES = ("bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac", "mult_bound_push")
 _WARM: dict[str, Any] = {  # the answer of almost the same problem, with its multipliers
     "mu_init": 1e-8,

@@ -14,6 +14,7 @@ from trajectory.path import Array, Path
 from trajectory.timing import TimeLaw
 
 _ROUNDING = 1e-9  # of the length
+_ULPS = 16.0  # by which arc length, where a knot is, may be rounded
 
 
 class TimedMotion(Protocol):
@@ -143,14 +144,17 @@ class TimedPath:
 
     @property
     def kink(self) -> float:
-        """The largest jump, at a knot inside, of the tangent, or of its derivative times the length."""
-        knots = np.array(self.path.knots)[1:-1]
-        if not knots.size:
+        """The largest jump, at a knot inside, of one of the first three derivatives by s over the length."""
+        knots, length = np.array(self.path.knots), self.path.length
+        if knots.size < 3:
             return 0.0
-        _, *before = self.path.evaluate(np.nextafter(knots, 0.0), 2)
-        _, *after = self.path.evaluate(knots, 2)
-        jumps = [np.abs(b - a).max() for b, a in zip(before, after, strict=True)]
-        return float(max(jumps[0], jumps[1] * self.path.length))
+        _, *before = self.path.evaluate(np.nextafter(knots[1:-1], 0.0), 3)
+        _, *after = self.path.evaluate(knots[1:-1], 3)
+        first, second, third = (np.abs(b - a) for b, a in zip(before, after, strict=True))
+        fourth = self.path.steepest((knots[1:] + knots[:-1]) / 2, 4)
+        rounding = _ULPS * np.finfo(float).eps * (length * np.maximum(fourth[:-1], fourth[1:]) + np.abs(after[2]))
+        third = np.maximum(third - rounding, 0.0)
+        return float(max(first.max(), second.max() * length, third.max() * length**2))
 
     def _fourth_slack(self, fourth: Array, low: Array, high: Array, away: Array) -> Array:
         """How far the fourth derivative by s may be, between two arc lengths (k,), from what it is in the middle.

@@ -177,7 +177,7 @@ def test_a_single_pose_is_a_region() -> None:
 
 def test_one_thread_gives_the_same_answer(monkeypatch: pytest.MonkeyPatch) -> None:
     both = certify(Heli4(), CYLINDER, "J_q", at_least=0.4)
-    monkeypatch.setattr(threads, "_THREADS", 1)
+    monkeypatch.setattr(threads, "CORES", 1)
     one = certify(Heli4(), CYLINDER, "J_q", at_least=0.4)
     assert one.status == both.status == "proved"
     assert one.boxes == both.boxes

@@ -119,7 +119,7 @@ def test_no_result_depends_on_where_a_block_ends(count):
 def test_no_result_depends_on_the_number_of_threads(monkeypatch, number):
     robot, poses = Heli4(), cylinder(5_003, seed=3)
     expected = robot.fvi(poses), robot.forward(robot.inverse(poses))
-    monkeypatch.setattr(threads, "_THREADS", number)
+    monkeypatch.setattr(threads, "CORES", number)
     monkeypatch.setattr(threads, "_LEAST_PER_THREAD", 10)
     found = robot.fvi(poses), robot.forward(robot.inverse(poses))
     assert all(np.array_equal(a, b) for a, b in zip(expected, found, strict=True))
@@ -127,7 +127,7 @@ def test_no_result_depends_on_the_number_of_threads(monkeypatch, number):
 
 @pytest.mark.parametrize("count", [0, 1, 5, 4095, 4096, 8192, 100_001])
 def test_threads_cover_every_pose_once(monkeypatch, count):
-    monkeypatch.setattr(threads, "_THREADS", 5)
+    monkeypatch.setattr(threads, "CORES", 5)
     seen = np.zeros(count, dtype=int)
 
     def work(span):

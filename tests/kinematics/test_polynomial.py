@@ -114,7 +114,7 @@ def test_leading_shape_is_kept(shape):
 
 def test_no_root_depends_on_the_number_of_threads(monkeypatch):
     c = np.random.default_rng(22).normal(size=(10_001, 5))
-    monkeypatch.setattr(threads, "_THREADS", 1)
+    monkeypatch.setattr(threads, "CORES", 1)
     alone = real_roots(c)
-    monkeypatch.setattr(threads, "_THREADS", 5)
+    monkeypatch.setattr(threads, "CORES", 5)
     np.testing.assert_array_equal(real_roots(c), alone)

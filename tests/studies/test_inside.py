@@ -17,7 +17,7 @@ from studies.load import load_study
 from studies.pipeline import time_cycle
 from studies.setup import limits_of, path_of, region_of, robot_of
 from tests.studies.command_line import SMALL
-from trajectory import AdeptCycle, PoseSpline, free_motion
+from trajectory import AdeptCycle, PoseSpline, RoundedPath, free_motion
 from trajectory.pose_bounds import PoseBounds
 from trajectory.pose_spline import InTime
 
@@ -48,6 +48,17 @@ def test_a_path_along_the_boundary_is_inside_and_a_little_less_room_is_not(tight
     assert found is not None
     assert -3 * TOLERANCE < found.room < -TOLERANCE
     assert shrunk.room(found.pose, NAMES) == pytest.approx(found.room, abs=1e-12)
+
+
+def test_the_end_of_a_way_is_where_it_is_furthest_out() -> None:
+    found = leaving(
+        Box(x=(-0.1, 0.1), y=0.0, z=-0.8, theta=0.0),
+        RoundedPath(NAMES, ((-0.1, 0.0, -0.8, 0.0), (0.2, 0.0, -0.8, 0.0)), ()),
+        NAMES,
+    )
+    assert found is not None
+    assert found.pose[0] == pytest.approx(0.2, abs=1e-12)
+    assert found.room == pytest.approx(-0.1, abs=1e-12)
 
 
 def test_a_motion_that_leaves_the_region_between_its_knots_only_is_found() -> None:

@@ -26,6 +26,8 @@ from trajectory import (
     there_and_back,
     time_optimal,
 )
+from trajectory.jerk_law import _Problem
+from trajectory.jerk_start import Start
 
 SMOOTH = Limits(speed=20.0, torque=127.0, jerk=1e5)
 RAIL = Redundant3T1R()  # its rails lie along x: a move along x moves every joint as far
@@ -243,6 +245,33 @@ def test_an_answer_that_has_not_converged_is_no_answer(
         jerk_limited(robot, path, SMOOTH, 1.0, QUICK)
     jerk_problem.solver_of.cache_clear()
     assert capfd.readouterr() == ("", "")
+
+
+def test_where_so_many_knots_have_no_answer_it_is_one_on_fewer(
+    robot: Heli4, path: AdeptCycle, mended: Repaired, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solved = _Problem.solved
+
+    def fails_on_many(problem: _Problem, start: Start) -> object:
+        if start.intervals > 100:
+            raise TimingFailed("jerk", {}, "no solution")
+        return solved(problem, start)
+
+    monkeypatch.setattr(_Problem, "solved", fails_on_many)
+    fewer = repair(robot, jerk_limited(robot, path, SMOOTH, 1.0), SMOOTH, 1.0)
+    assert fewer.motion.times.size == 101
+    assert mended.motion.duration < fewer.motion.duration < 1.002 * mended.motion.duration
+
+
+def test_an_answer_that_could_not_be_tightened_is_for_the_repair(
+    robot: Heli4, path: AdeptCycle, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object) -> object:
+        raise TimingFailed("jerk", {}, "no solution")
+
+    monkeypatch.setattr(_Problem, "solved_again", fails)
+    law = jerk_limited(robot, path, SMOOTH, 1.0, 400)
+    assert 1.0 < repair(robot, law, SMOOTH, 1.0).factor < 1.01
 
 
 def test_a_path_with_a_cusp_or_out_of_reach_is_refused(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from tests.bench.timing.toppra_peer import ExactPath, defaults, problem_of, solv
 from trajectory import (
     AdeptCycle,
     Limits,
+    Path,
     Reversed,
     RoundedPath,
     TimedPath,
@@ -169,3 +171,44 @@ def test_a_corner_too_small_for_the_integrals_is_found_all_the_same(robot: Heli4
     kinked = RoundedPath(("x", "y", "z", "theta"), poses, (0.0,))
     found = verify(robot, time_optimal(robot, kinked, limits, 1.0, 1000).stretched(1.01), limits, 1.0)
     assert found.failures["kink of the path"] > 100.0
+
+
+@dataclass(frozen=True)
+class Twitching:
+    """Along x; theta''' is -d, +d, -d over a few tenths of a micrometre: theta, theta' and theta'' are continuous."""
+
+    size: float = 2e7  # d [rad/m^3]
+    step: float = 2e-7
+    length: float = 0.2
+    pose_names: tuple[str, ...] = ("x", "y", "z", "theta")
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        return (0.0, *(0.1 + self.step * np.array([0.0, 1.0, 3.0, 4.0])).tolist(), self.length)
+
+    def evaluate(self, s: np.ndarray, order: int = 3) -> tuple[np.ndarray, ...]:
+        knots, third = np.array(self.knots), self.size * np.array([0.0, -1.0, 1.0, -1.0, 0.0])
+        state, states = np.zeros(3), list[np.ndarray]()
+        for h, j in zip(np.diff(knots), third, strict=True):
+            states.append(state)
+            p, v, a = state
+            state = np.array([p + h * (v + h * (a / 2 + h * j / 6)), v + h * (a + h * j / 2), a + h * j])
+        k = np.clip(np.searchsorted(knots, s, side="right") - 1, 0, 4)
+        (p, v, a), h, j = np.moveaxis(np.array(states)[k], -1, 0), s - knots[k], third[k]
+        theta = (p + h * (v + h * (a / 2 + h * j / 6)), v + h * (a + h * j / 2), a + h * j, j, 0.0 * s)
+        x = (s - 0.1, 1.0 + 0.0 * s, *[0.0 * s] * 3)
+        z = (0.0 * s - 0.8, *[0.0 * s] * 4)
+        return tuple(np.stack([x[o], 0.0 * s, z[o], theta[o]], axis=-1) for o in range(order + 1))
+
+    def steepest(self, s: np.ndarray, order: int) -> np.ndarray:  # noqa: ARG002
+        return np.zeros((s.size, 4))
+
+
+def test_a_third_derivative_that_jumps_is_found_although_no_proof_inside_the_parts_sees_it(
+    robot: Heli4, s_curve: Callable[[Path, float], TimedPath]
+) -> None:
+    limits = Limits(speed=20.0, jerk=1e5)
+    moved = s_curve(Twitching(), 0.4)
+    middle = moved.at(0.2 + np.linspace(-2e-6, 2e-6, 4001))
+    assert motion_of(robot, middle, 1.0).joints.third.max() > 3.0 * limits.jerk
+    assert verify(robot, moved, limits, 1.0).failures["kink of the path"] > 1e3
