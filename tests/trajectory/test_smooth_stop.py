@@ -55,9 +55,9 @@ def motion(robot: Heli4, path: AdeptCycle) -> TimedMotion:
 @pytest.fixture(scope="module")
 def stops(robot: Heli4, motion: TimedMotion) -> list[EmergencyStop]:
     """From knots, from just before and after them, from next to both ends and from anywhere."""
-    knots = np.quantile(motion.times, (0.145, 0.5, 0.8), method="nearest")
+    knots = np.quantile(motion.times, (0.145, 0.6), method="nearest")
     at = [1e-6 * motion.duration, *knots, *knots * (1 - 1e-9), *knots * (1 + 1e-9), (1 - 1e-6) * motion.duration]
-    at += list(np.random.default_rng(5).uniform(0.0, motion.duration, 5))
+    at += list(np.random.default_rng(5).uniform(0.0, motion.duration, 4))
     return [emergency_stop(robot, motion, t, LIMITS, 1.0) for t in at]
 
 
