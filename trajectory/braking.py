@@ -24,8 +24,10 @@ import numpy as np
 from kinematics import Mechanism
 from kinematics.dynamics import inverse_dynamics
 from kinematics.motion import actuator_motion
+from trajectory.knots import interval_of
 from trajectory.limits import Limits
-from trajectory.paced import one_sided
+from trajectory.motion import PoseMotion
+from trajectory.paced import SAME
 from trajectory.path import Array, places
 from trajectory.timed import TimedMotion
 from trajectory.timing import TimeLaw
@@ -46,22 +48,30 @@ def braking(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, 
 
 
 def with_knots(timed: TimedMotion, even: Array, least: float | Array) -> Array:
-    """From the first of (k,) increasing times to the motion's end: its knots, and those times that are not too close.
+    """From the first of (k,) increasing times to the motion's end: all its knots, and the times not too close to them.
 
     Args:
         timed, even: the motion and the times [s].
-        least: how far a time is from each knot at least; one number or (k,) [s].
+        least: how far from each knot they are at least; one number or (k,) [s].
     """
     least = np.broadcast_to(least, even.shape)
-    later = timed.times[timed.times > even[0] + least[0]]
+    inside = timed.times[1:-1]
+    later = np.append(inside[inside > even[0] + SAME * timed.duration], timed.duration)
     apart = np.abs(even[:, None] - later[np.searchsorted(later, even).clip(1, later.size - 1)[:, None] + [-1, 0]])
-    apart[0] = 0.0  # the first one is there already
-    return np.concatenate([even[:1], np.union1d(even[apart.min(axis=1) > least], later)])
+    return np.concatenate([even[:1], np.union1d(even[1:][apart.min(axis=1)[1:] > least[1:]], later)])
+
+
+def steps_of(timed: TimedMotion, knots: Array, fractions: Array) -> PoseMotion:
+    """The motion at fractions (j,) from 0 to 1 of the k steps between its times `knots`; each step's own limit at 1."""
+    tau = (1.0 - fractions) * knots[:-1, None] + fractions * knots[1:, None]
+    interval = interval_of(timed.times, tau)
+    interval[:, -1] = interval_of(timed.times, tau[:, -1], "left")
+    return timed.inside(interval, tau - timed.times[interval])
 
 
 def _pace(robot: Mechanism, timed: TimedMotion, knots: Array, limits: Limits, payload: float) -> tuple[Array, Array]:
     """Times of the motion (k,) and the pace there, from 1 to 0."""
-    pose, first, second, _ = timed.at(one_sided(knots, np.stack([knots[:-1], knots[1:]], axis=1)))
+    pose, first, second, _ = steps_of(timed, knots, np.array([0.0, 1.0]))
     return _brake(knots, _rows(robot, pose, first, second, limits, payload), _disc(robot, first, second, limits))
 
 

@@ -7,14 +7,13 @@ acceleration (`smooth_braking`), and else in the shortest way, with steps where 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from kinematics import InvalidValue, Mechanism
 from trajectory.braking import braking
-from trajectory.errors import LimitsExceeded
+from trajectory.errors import LimitsExceeded, TimingFailed
 from trajectory.limits import Limits
 from trajectory.paced import PacedMotion
 from trajectory.path import Array
@@ -23,11 +22,7 @@ from trajectory.timed import TimedMotion
 from trajectory.timing import TimeLaw
 from trajectory.verification import Verification, verify
 
-MARGINS = (
-    4e-3,
-    2e-2,
-)  # of the limits, for the jerk-limited pace to keep them between its knots too; the first that does
-_MARGINS = (4e-3, 1e-2, 3e-2)  # of the limits: the first with which they are proved to hold between the knots too
+_MARGINS = (1e-3, 4e-3, 1e-2, 3e-2)  # of the limits: the first with which they are proved between the knots too
 _BRAKING = ("acceleration", "torque", "tool_acceleration", "jerk")
 
 
@@ -78,16 +73,21 @@ def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: L
     if all(getattr(limits, name) is None for name in _BRAKING):
         raise InvalidValue("Limits for an emergency stop", limits.as_dict(), f"one of {', '.join(_BRAKING)}")
     kept, before = replace(limits, rms_torque=None), timed.at(np.array(start))
-    for pace in _paces(robot, timed, start, kept, payload):
-        motion = PacedMotion(timed, pace)
+    why: list[LimitsExceeded | TimingFailed] = []
+    for margin in (0.0,) if limits.jerk is None else _MARGINS:
+        try:
+            motion = PacedMotion(timed, _pace(robot, timed, start, kept, payload, margin))
+        except TimingFailed as failed:
+            why.append(failed)
+            continue
         found = verify(robot, motion, kept, payload, before)
         if found.ok:
             return EmergencyStop(motion, start, found)
-    raise LimitsExceeded(found.failures, 1.0)
+        why.append(LimitsExceeded(found.failures, 1.0))
+    raise why[-1]
 
 
-def _paces(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float) -> Iterator[TimeLaw]:
+def _pace(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float, margin: float) -> TimeLaw:
     if limits.jerk is None:
-        yield braking(robot, timed, start, limits, payload)
-    else:
-        yield from (smooth_braking(robot, timed, start, limits, payload, margin) for margin in _MARGINS)
+        return braking(robot, timed, start, limits, payload)
+    return smooth_braking(robot, timed, start, limits, payload, margin)

@@ -6,13 +6,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trajectory.knots import interval_of
+from kinematics import InvalidValue
+from trajectory.knots import interval_of, located, throughout
 from trajectory.motion import PoseMotion, largest_speed, travelled, travelled_snap
 from trajectory.path import Array
 from trajectory.timed import TimedMotion
-from trajectory.timing import TimeLaw
+from trajectory.timing import PathMotion, TimeLaw
 
-_INSIDE = 1e-9  # of an interval: how far from its knots one-sided limits are taken
+SAME = 1e-12  # of the motion's duration: times that are closer are one
+_ROUNDING = 1e-9  # of a part
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,10 +24,26 @@ class PacedMotion:
     Attributes:
         motion: p(tau).
         pace: tau in time; each knot of the motion that it passes is one of its own.
+
+    Raises:
+        InvalidValue: the pace leaves the motion's time, turns back, or passes a knot of the motion between two of its
+            own.
     """
 
     motion: TimedMotion
     pace: TimeLaw
+
+    def __post_init__(self) -> None:
+        tau, knots, same = self.pace.position, self.motion.times, SAME * self.motion.duration
+        if tau[0] < -same or tau[-1] > self.motion.duration + same or (np.diff(tau) < 0.0).any():
+            found = f"knots from {tau[0]:.9g} to {tau[-1]:.9g} s of the motion's time"
+            raise InvalidValue("pace of a motion", found, f"rising ones in [0, {self.motion.duration:.9g}] s")
+        passed = knots[(knots > tau[0] + same) & (knots < tau[-1] - same)]
+        after = np.searchsorted(tau, passed)
+        hidden = passed[np.minimum(tau[after] - passed, passed - tau[after - 1]) > same]
+        if hidden.size:
+            found = f"none of its knots at {hidden[0]:.12g} s of the motion's time"
+            raise InvalidValue("pace of a motion", found, "one at each knot of the motion that it passes")
 
     @property
     def name(self) -> str:
@@ -55,14 +73,17 @@ class PacedMotion:
 
     def at(self, t: Array) -> PoseMotion:
         """As `TimedMotion.at`."""
-        along = self.pace.at(t)
-        return travelled(self.motion.at(along.position), along)
+        return self.inside(*located(self.times, t))
 
     def within(self, fractions: Array) -> tuple[Array, PoseMotion]:
         """As `TimedMotion.within`."""
-        times, along = self.pace.within(fractions)
-        inside = one_sided(self.pace.position, along.position)
-        return times, travelled(self.motion.at(inside), along)
+        interval, since = throughout(self.times, fractions)
+        return self.times[interval] + since, self.inside(interval, since)
+
+    def inside(self, interval: Array, since: Array) -> PoseMotion:
+        """As `TimedMotion.inside`."""
+        along = self.pace.inside(interval, since)
+        return travelled(self._passed(interval, along)[1], along)
 
     def stretched(self, factor: float) -> PacedMotion:
         """As `TimedMotion.stretched`."""
@@ -75,17 +96,17 @@ class PacedMotion:
 
     def enclose_snap(self, low: Array, high: Array) -> Array:
         """As `TimedMotion.enclose_snap`."""
-        along, half = self.pace.at(0.5 * low + 0.5 * high), (high - low) * (0.5 + _INSIDE)
-        away, knots = half * largest_speed(along, half), self.motion.times
-        interval = interval_of(knots, along.position)
-        first, last = (np.clip(along.position + d, knots[interval], knots[interval + 1]) for d in (-away, away))
+        interval, since = located(self.times, 0.5 * low + 0.5 * high)
+        along, half = self.pace.inside(interval, since), (high - low) * (0.5 + _ROUNDING)
+        theirs, (_, *derivatives) = self._passed(interval, along)
+        away, knots = half * largest_speed(along, half) + SAME * self.motion.duration, self.motion.times
+        first, last = (np.clip(along.position + d, knots[theirs], knots[theirs + 1]) for d in (-away, away))
         least, most = self.motion.enclose_snap(first, last)
-        _, *derivatives = self.motion.at(along.position)
         return travelled_snap([*derivatives, 0.5 * least + 0.5 * most], 0.5 * (most - least), along, half)
 
-
-def one_sided(knots: Array, tau: Array) -> Array:
-    """(k, j) times in each interval of (k + 1,) knots, taken off the knots so that each stays in its own interval."""
-    first, last = knots[:-1, None], knots[1:, None]
-    gap = _INSIDE * (last - first)
-    return np.clip(tau, first + gap, last - gap)
+    def _passed(self, interval: Array, along: PathMotion) -> tuple[Array, PoseMotion]:
+        """The motion's interval in which each interval of the pace lies, and the motion there."""
+        tau, knots = self.pace.position, self.motion.times
+        theirs = interval_of(knots, 0.5 * tau[:-1] + 0.5 * tau[1:])[interval]
+        since = np.clip(along.position - knots[theirs], 0.0, np.diff(knots)[theirs])
+        return theirs, self.motion.inside(theirs, since)

@@ -69,12 +69,12 @@ class PoseSpline:
 
     def at(self, t: Array) -> PoseMotion:
         """As `TimedMotion.at`."""
-        return self._in_interval(*located(self.times, t))
+        return self.inside(*located(self.times, t))
 
     def within(self, fractions: Array) -> tuple[Array, PoseMotion]:
         """As `TimedMotion.within`."""
         interval, since = throughout(self.times, fractions)
-        return self.times[interval] + since, self._in_interval(interval, since)
+        return self.times[interval] + since, self.inside(interval, since)
 
     def stretched(self, factor: float) -> PoseSpline:
         """As `TimedMotion.stretched`."""
@@ -97,7 +97,8 @@ class PoseSpline:
         """None: the intervals join to the second derivative."""
         return 0.0
 
-    def _in_interval(self, interval: Array, since: Array) -> PoseMotion:
+    def inside(self, interval: Array, since: Array) -> PoseMotion:
+        """As `TimedMotion.inside`."""
         p, v, a, j = (x[interval] for x in (self.pose, self.velocity, self.acceleration, self.jerk))
         t = since[..., None]
         return PoseMotion(p + t * (v + t * (a / 2 + t * j / 6)), v + t * (a + t * j / 2), a + t * j, j)

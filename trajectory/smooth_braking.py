@@ -5,10 +5,10 @@ constant in each interval. What it makes small is the mean of x = tau'^2 over th
 something is met. Without limits of the jerk the pace of `braking` has the least, as it has the least x everywhere.
 
 The limits are linear in x and tau'' once their tangents stand (`smooth_braking_rows`): a linear programme finds the
-pace, new tangents at its answer the next one, until x falls no more (`smooth_pace`). The motion itself keeps the rows
-of the first programme, so there is an answer from any instant of any motion within its limits. The knots then stand
-where that pace needs them, closer together towards where it rests, and all is done again until that place
-stays. The answer is a local one, on its knots.
+pace, new tangents at its answer the next one, until x falls no more (`smooth_pace`). A motion within its limits keeps
+the rows of the first programme, so that one has an answer from any instant. The knots then stand where its pace needs
+them, closer together towards where it rests, and all is done again until that place stays. That it does is not sure,
+nor that the limits hold between the knots. The answer is a local one.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ import math
 import numpy as np
 
 from kinematics import Mechanism
-from trajectory.braking import with_knots
+from trajectory.braking import steps_of, with_knots
 from trajectory.errors import LimitsExceeded, TimingFailed
 from trajectory.limits import Limits
 from trajectory.motion import motion_of
-from trajectory.paced import one_sided
+from trajectory.paced import SAME
 from trajectory.path import Array
 from trajectory.smooth_braking_rows import braking_rows
 from trajectory.smooth_pace import INSTANTS, Pace, least_pace
@@ -38,6 +38,7 @@ _ROUNDS = 12
 _SLOW = 0.05  # pace from which a constant jerk leads to rest
 _SETTLED = 0.03  # of the way, by which it may differ from what the knots were made for
 _ROUNDING = 1e-9  # of the way, a limit or the largest acceleration
+_FIRST = 1e-3  # of the first step: a knot of the motion that is closer to the start would be too much for a programme
 _HIGHER = 0.001  # a guess on new knots over the answer on the old ones: a tangent at too low an x forbids more
 
 
@@ -59,13 +60,13 @@ def smooth_braking(
     coarse = np.linspace(start, timed.duration, COARSE + 1)
     before = _least(robot, timed, Pace(coarse, np.ones_like(coarse), np.zeros_like(coarse)), limits, payload, margin)
     for _ in range(_ROUNDS):
-        law = None if before is None else _law(before)
+        law = None if before is None else _law(timed, before)
         if before is None or law is None:
             break
         knots, last = _knots(timed, start, law.position[-1])
         guess = np.minimum(np.interp(knots, before.tau, before.x) + _HIGHER, 1.0)
         pace = _least(robot, timed, Pace(knots, guess, np.interp(knots, before.tau, before.b)), limits, payload, margin)
-        found = None if pace is None else _law(pace)
+        found = None if pace is None else _law(timed, pace)
         way = law.position[-1] - start
         rest = math.inf if found is None else found.position[-1]
         if found is not None and rest <= last and abs(rest - law.position[-1]) <= _SETTLED * way:
@@ -78,9 +79,7 @@ def _least(
     robot: Mechanism, timed: TimedMotion, near: Pace, limits: Limits, payload: float, margin: float
 ) -> Pace | None:
     """The pace on the knots of a guess."""
-    tau = near.tau
-    instants = one_sided(tau, tau[:-1, None] + np.diff(tau)[:, None] * INSTANTS)
-    rows = braking_rows(robot, motion_of(robot, timed.at(instants), payload), limits, payload)
+    rows = braking_rows(robot, motion_of(robot, steps_of(timed, near.tau, INSTANTS), payload), limits, payload)
     return least_pace(*rows, near, margin)
 
 
@@ -105,15 +104,16 @@ def _knots(timed: TimedMotion, start: float, rest: float) -> tuple[Array, float]
     beyond = to_go[to_go <= _BEYOND][-2::-1]
     even = rest + (rest - start) * np.concatenate([-(to_go**2), beyond**2])
     even = even[even <= timed.duration]
-    last = even[-1]
+    even[0], last = start, even[-1]  # not to rounding alone
     knots = with_knots(timed, even, 0.2 * np.append(np.diff(even), last - even[-2]))
+    knots = knots[(knots == start) | (knots > start + _FIRST * (even[1] - start)) & (knots <= last)]
     later = np.linspace(last, timed.duration, _LATER + 1)[1:] if last < timed.duration else even[:0]
-    return np.append(knots[knots <= last], later), float(last)
+    return np.append(knots, later), float(last)
 
 
-def _law(pace: Pace) -> TimeLaw | None:
+def _law(timed: TimedMotion, pace: Pace) -> TimeLaw | None:
     """The law with these tau'' at its knots, down to the pace from which a constant jerk leads to rest."""
-    tau, second = pace.tau, -pace.b
+    tau, second = _with_first_knots(timed, pace)
     times, speeds = [0.0], [1.0]
     for k, step in enumerate(np.diff(tau)):
         v, mean = speeds[k], (2.0 * second[k] + second[k + 1]) / 3.0
@@ -131,11 +131,19 @@ def _law(pace: Pace) -> TimeLaw | None:
     return _joined(np.array(times), tau, np.array(speeds), second)
 
 
+def _with_first_knots(timed: TimedMotion, pace: Pace) -> tuple[Array, Array]:
+    """Knots and tau'' there, with the motion's own in the first step too: tau'' grows from 0 at one rate in time."""
+    start, first = pace.tau[:2]
+    missed = timed.times[(timed.times > start + SAME * timed.duration) & (timed.times < first)]
+    share = (missed - start) / (first - start) * 0.5 * (1.0 + math.sqrt(pace.x[1]))  # of the step's time
+    return np.insert(pace.tau, 1, missed), -np.insert(pace.b, 1, share * pace.b[1])
+
+
 def _to_rest(tau: Array, second: Array, times: Array, speeds: Array, to_go: float) -> TimeLaw:
     """The law up to its last knot so far, and from there to rest at a constant jerk, with a knot at each tau."""
     k = times.size - 1
     rest, jerk, last = tau[k] + to_go, 0.5 * second[k] ** 2 / speeds[k], -2.0 * speeds[k] / second[k]
-    between = tau[k + 1 :][tau[k + 1 :] < rest - _ROUNDING * (rest - tau[0])]
+    between = tau[k + 1 :][tau[k + 1 :] < rest * (1.0 - SAME)]
     left = np.append(np.cbrt(6.0 * (rest - between) / jerk), 0.0)  # time
     return _joined(
         np.append(times, times[k] + last - left),

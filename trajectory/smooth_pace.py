@@ -15,6 +15,7 @@ INSTANTS = np.linspace(0.0, 1.0, 9)  # of each interval, where its rows stand
 _LOWEST = 0.01  # pace: slower ones have their tangents here
 _CONVERGED = 1e-3  # relative, of the mean square
 _ROUNDS = 50
+_SOLVED, _INFEASIBLE = 0, 2  # of linprog
 _NEAR = 0.02  # of a limit: rows that are so close to it are in the first programme
 _KEPT = 1e-9  # of a limit: what a programme's answer may be over a row that is not in it
 _NEXT = 0.02  # of a limit: rows that are so close to it come in with those that are over it
@@ -109,9 +110,13 @@ def _programme(rows: LinearRows, active: Array, pace: Array, tau: Array) -> Pace
     low, high = np.zeros(2 * n + 2), np.concatenate([np.ones(n + 1), [0.0], np.full(n - 1, np.inf), [0.0]])
     low[0] = 1.0
     mean = np.concatenate([np.append(steps, 0.0) + np.append(0.0, steps), np.zeros(n + 1)]) / 2.0
-    bounds, options = np.stack([low, high], axis=1), {"primal_feasibility_tolerance": _KEPT}
-    answer = linprog(mean, limited, rows.most[active], falls, np.zeros(n), bounds, "highs-ds", options=options)
-    if answer.status != 0:
+    bounds = np.stack([low, high], axis=1)
+    for presolve in (False, True):  # each now and then ends without a verdict, where the other one finds it
+        options = {"primal_feasibility_tolerance": _KEPT, "presolve": presolve}
+        answer = linprog(mean, limited, rows.most[active], falls, np.zeros(n), bounds, "highs-ds", options=options)
+        if answer.status in (_SOLVED, _INFEASIBLE):
+            break
+    if answer.status != _SOLVED:
         return None
     x, b = np.split(np.maximum(answer.x, 0.0), 2)
     return Pace(tau, x, b / length)

@@ -54,6 +54,9 @@ class TimedMotion(Protocol):
             Times (k, j) [s] and the motion there, (k, j, n) each.
         """
 
+    def inside(self, interval: Array, since: Array) -> PoseMotion:
+        """The motion in intervals (...,), from 0, so long (...,) after each one's start [s]: one-sided limits too."""
+
     def stretched(self, factor: float) -> Self:
         """The same way travelled `factor` times as long.
 
@@ -122,6 +125,10 @@ class TimedPath:
         """As `TimedMotion.within`."""
         times, along = self.law.within(fractions)
         return times, pose_motion(self.path, along)
+
+    def inside(self, interval: Array, since: Array) -> PoseMotion:
+        """As `TimedMotion.inside`."""
+        return pose_motion(self.path, self.law.inside(interval, since))
 
     def stretched(self, factor: float) -> TimedPath:
         """As `TimedMotion.stretched`."""

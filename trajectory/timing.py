@@ -99,7 +99,7 @@ class TimeLaw:
         Raises:
             InvalidValue: a time outside the law by more than rounding, or not a number.
         """
-        return self._in_interval(*located(self.times, t))
+        return self.inside(*located(self.times, t))
 
     def within(self, fractions: Array) -> tuple[Array, PathMotion]:
         """Every interval at fractions (k,) of its own time, so that 0 and 1 give its one-sided limits.
@@ -108,7 +108,7 @@ class TimeLaw:
             Times (n, k) [s] and the motion there, (n, k) each.
         """
         interval, since = throughout(self.times, fractions)
-        return self.times[interval] + since, self._in_interval(interval, since)
+        return self.times[interval] + since, self.inside(interval, since)
 
     def stretched(self, factor: float) -> TimeLaw:
         """The same path travelled `factor` times as long.
@@ -127,7 +127,8 @@ class TimeLaw:
             snap=self.snap / factor**4,
         )
 
-    def _in_interval(self, interval: Array, since: Array) -> PathMotion:
+    def inside(self, interval: Array, since: Array) -> PathMotion:
+        """In these intervals (...,), from 0, so long (...,) after each one's start [s]: its one-sided limits too."""
         coefficients = (self.position, self.speed, self.acceleration, self.jerk, self.snap)
         s, v, a, j, d = (x[interval] for x in coefficients)
         position = s + since * (v + since * (a / 2 + since * (j / 6 + since * d / 24)))

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
+from importlib import import_module
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,15 +18,19 @@ from trajectory import (
     EmergencyStop,
     Limits,
     LimitsExceeded,
+    Path,
     PoseSpline,
+    Reversed,
     TimedMotion,
     TimedPath,
     TimeLaw,
+    TimingFailed,
     emergency_stop,
     jerk_limited,
     repair,
     verify,
 )
+from trajectory.smooth_braking import smooth_braking
 
 LIMITS = Limits(speed=20.0, torque=127.0, jerk=1e5)
 
@@ -42,15 +49,15 @@ def s_law(speed: float, jerk: float, cruise: float) -> TimeLaw:
 @pytest.fixture(scope="module")
 def motion(robot: Heli4, path: AdeptCycle) -> TimedMotion:
     """Close to its limits all along: torque nearly everywhere, jerk where that is not."""
-    return repair(robot, jerk_limited(robot, path, LIMITS, 1.0, 60), LIMITS, 1.0).motion
+    return repair(robot, jerk_limited(robot, path, LIMITS, 1.0), LIMITS, 1.0).motion
 
 
 @pytest.fixture(scope="module")
 def stops(robot: Heli4, motion: TimedMotion) -> list[EmergencyStop]:
-    """From knots, from next to them, from next to both ends and from anywhere."""
-    knots = motion.times[[20]]
-    at = [1e-6 * motion.duration, *knots, knots[0] * (1 - 1e-10), (1 - 1e-6) * motion.duration]
-    at += list(np.random.default_rng(5).uniform(0.0, motion.duration, 6))
+    """From knots, from just before and after them, from next to both ends and from anywhere."""
+    knots = np.quantile(motion.times, (0.145, 0.6), method="nearest")
+    at = [1e-6 * motion.duration, *knots, *knots * (1 - 1e-9), *knots * (1 + 1e-9), (1 - 1e-6) * motion.duration]
+    at += list(np.random.default_rng(5).uniform(0.0, motion.duration, 4))
     return [emergency_stop(robot, motion, t, LIMITS, 1.0) for t in at]
 
 
@@ -75,6 +82,61 @@ def test_it_takes_over_pose_speed_and_acceleration_and_rests_before_the_end(
         last = stop.motion.at(np.array([stop.duration]))
         assert np.abs(last.velocity).max() < 1e-9
         assert np.abs(last.acceleration).max() < 1e-6
+
+
+def test_no_knot_of_the_motion_is_hidden(stops: list[EmergencyStop], motion: TimedMotion) -> None:
+    for stop in stops:
+        tau = stop.motion.pace.position
+        passed = motion.times[(motion.times > stop.start * (1 + 1e-12)) & (motion.times < tau[-1])]
+        assert np.abs(tau - passed[:, None]).min(axis=1, initial=np.inf) == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("way", "jerk", "starts"),
+    [(AdeptCycle(), 1e6, (0.05719, 0.05979, 0.06)), (Reversed(AdeptCycle()), 1e5, (0.01820958, 0.08155))],
+    ids=["high jerk", "way back"],
+)
+def test_knots_are_no_jumps_of_the_acceleration(
+    robot: Heli4, way: Path, jerk: float, starts: tuple[float, ...]
+) -> None:
+    limits = replace(LIMITS, jerk=jerk)
+    motion = repair(robot, jerk_limited(robot, way, limits, 1.0), limits, 1.0).motion
+    for start in starts:
+        found = emergency_stop(robot, motion, start, limits, 1.0).verification
+        assert 0.9 < found.peak_over_limit["joint jerk"] <= found.proved["joint jerk"] <= 1.0
+
+
+def test_programmes_that_leave_hardly_a_choice_are_solved_too(robot: Heli4, motion: TimedMotion) -> None:
+    """No margin in hand; so late that the motion itself is the only way."""
+    for start, margin in ((0.06765380640768347, 0.0), (0.1301092949560268, 1e-3)):
+        pace = smooth_braking(robot, motion, start, LIMITS, 1.0, margin)
+        assert start < pace.position[-1] <= motion.duration
+
+
+def test_every_margin_is_tried_before_a_stop_fails(
+    robot: Heli4, motion: TimedMotion, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No pace at any margin, then one at the last."""
+    module, tried = import_module("trajectory.emergency_stop"), list[float]()
+
+    def only(found: float | None) -> Callable[..., TimeLaw]:
+        def pace(*args: Any) -> TimeLaw:
+            tried.append(args[-1])
+            if args[-1] == found:
+                return smooth_braking(*args)
+            raise TimingFailed("emergency stop", {}, f"none at {args[-1]}")
+
+        return pace
+
+    monkeypatch.setattr(module, "smooth_braking", only(None))
+    with pytest.raises(TimingFailed) as failed:
+        emergency_stop(robot, motion, 0.5 * motion.duration, LIMITS, 1.0)
+    margins = tried.copy()
+    assert len(margins) > 1
+    assert f"none at {margins[-1]}" in str(failed.value)
+    monkeypatch.setattr(module, "smooth_braking", only(margins[-1]))
+    assert emergency_stop(robot, motion, 0.5 * motion.duration, LIMITS, 1.0).verification.ok
+    assert tried == 2 * margins
 
 
 def test_an_acceleration_that_does_not_continue_the_motion_fails_the_jerk_limit(
