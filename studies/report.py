@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from typing import Any
 
@@ -17,6 +17,7 @@ from studies.tables import MARGINS, PROOFS, margin_rows, proof_rows
 from trajectory.motion import motion_of
 
 Pictures = list[tuple[str, bytes]]  # title and PNG
+_STATED = ("path", "limit", "payload", "period", "assumptions", "inertia")
 _MAPPED = ("fvi", "internal_determinant")
 _TITLES = {
     "fvi": "FVI, worst over the other coordinates",
@@ -56,7 +57,7 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
         pictures=[(title, _embedded(png)) for title, png in pictures],
         timings=_timing_rows(outcome),
         peaks=_peak_rows(outcome.timing) if outcome.timing else [],
-        setpoints=outcome.timing.setpoints if outcome.timing else None,
+        stated=_stated(outcome.timing.setpoints.header) if outcome.timing else [],
         timing=outcome.timing,
     )
 
@@ -139,6 +140,22 @@ def _motion_pictures(timing: Timing) -> Pictures:
         ("Path of the half cycle", plots.path_picture(pose, times, robot.pose_names)),
         ("Joints on the way there, limits dashed", plots.motion_picture(times, rows, robot.actuator_names)),
     ]
+
+
+def _stated(header: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """What the set-points' header says of the path, the limits and the masses."""
+    return [(name, _spelled(value)) for name, value in header.items() if name.startswith(_STATED)]
+
+
+def _spelled(value: Any) -> str:
+    """Plain data in words: what is empty is none."""
+    if isinstance(value, dict):
+        return "; ".join(
+            f"{name} ({_spelled(v)})" if isinstance(v, dict) else f"{name} {_spelled(v)}" for name, v in value.items()
+        )
+    if isinstance(value, list):
+        return ", ".join(_spelled(v) for v in value) or "none"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _embedded(png: bytes) -> str:
