@@ -8,6 +8,7 @@ acceleration (`smooth_braking`), and else in the shortest way, with steps where 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from trajectory.timing import TimeLaw
 from trajectory.verification import Verification, verify
 
 _MARGINS = (1e-3, 4e-3, 1e-2, 3e-2)  # of the limits: the first with which they are proved between the knots too
+_LATER = 2  # knots of the motion at which braking may start where it does not succeed at once
 _BRAKING = ("acceleration", "torque", "tool_acceleration", "jerk")
 
 
@@ -54,12 +56,13 @@ class EmergencyStop:
 def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float) -> EmergencyStop:
     """A stop on the motion's own way, within every limit but the RMS torque's, which is of whole ways.
 
-    Without a limit of the jerk it is the shortest one; with one, the mean square of its pace over the way is small.
+    Without a limit of the jerk it is the shortest one; with one, the mean square of its pace over the way is small, and
+    where none is found from `start` it goes on to the motion's next knot, or the one after, and brakes from there.
 
     Args:
         robot: any mechanism with the motion's kind of pose.
         timed: a motion within these limits.
-        start: when the braking starts, inside (0, T) [s].
+        start: when it interrupts the motion, inside (0, T) [s].
         limits: of joints and tool.
         payload: mass at the tool [kg].
 
@@ -74,9 +77,13 @@ def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: L
         raise InvalidValue("Limits for an emergency stop", limits.as_dict(), f"one of {', '.join(_BRAKING)}")
     kept, before = replace(limits, rms_torque=None), timed.at(np.array(start))
     why: list[LimitsExceeded | TimingFailed] = []
-    for margin in (0.0,) if limits.jerk is None else _MARGINS:
+    margins = (0.0,) if limits.jerk is None else _MARGINS
+    later = timed.times[(timed.times > start) & (timed.times < timed.duration)][:_LATER]
+    for passed, margin in product(range(later.size + 1), margins):
+        cruise = np.append(start, later[:passed])
         try:
-            motion = PacedMotion(timed, _pace(robot, timed, start, kept, payload, margin))
+            pace = _pace(robot, timed, cruise[-1], kept, payload, margin)
+            motion = PacedMotion(timed, _after(cruise, pace))
         except TimingFailed as failed:
             why.append(failed)
             continue
@@ -85,6 +92,18 @@ def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: L
             return EmergencyStop(motion, start, found)
         why.append(LimitsExceeded(found.failures, 1.0))
     raise why[-1]
+
+
+def _after(cruise: Array, pace: TimeLaw) -> TimeLaw:
+    """The pace from the last of these times (k + 1,) of the motion on, and the motion's own up to there."""
+    held, none = np.ones(cruise.size - 1), np.zeros(cruise.size - 1)
+    return TimeLaw(
+        pace.name,
+        np.append(cruise[:-1] - cruise[0], pace.times + (cruise[-1] - cruise[0])),
+        np.append(cruise[:-1], pace.position),
+        np.append(held, pace.speed),
+        *(np.append(none, part) for part in (pace.acceleration, pace.jerk, pace.snap)),
+    )
 
 
 def _pace(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float, margin: float) -> TimeLaw:

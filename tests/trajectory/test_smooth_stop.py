@@ -131,12 +131,23 @@ def test_every_margin_is_tried_before_a_stop_fails(
     monkeypatch.setattr(module, "smooth_braking", only(None))
     with pytest.raises(TimingFailed) as failed:
         emergency_stop(robot, motion, 0.5 * motion.duration, LIMITS, 1.0)
-    margins = tried.copy()
+    margins = tried[: len(tried) // 3]  # from the start, and from two knots later
     assert len(margins) > 1
+    assert tried == 3 * margins
     assert f"none at {margins[-1]}" in str(failed.value)
     monkeypatch.setattr(module, "smooth_braking", only(margins[-1]))
     assert emergency_stop(robot, motion, 0.5 * motion.duration, LIMITS, 1.0).verification.ok
-    assert tried == 2 * margins
+    assert tried == 4 * margins
+
+
+def test_where_braking_does_not_succeed_at_once_it_does_from_the_next_knot(robot: Heli4) -> None:
+    """A hair before a knot of the way back, whose limit just after the knot no programme sees."""
+    motion = repair(robot, jerk_limited(robot, Reversed(AdeptCycle()), LIMITS, 1.0), LIMITS, 1.0).motion
+    knot = motion.times[np.searchsorted(motion.times, 0.0157)]
+    stop = emergency_stop(robot, motion, knot - 1.6e-7, LIMITS, 1.0)
+    assert stop.motion.pace.speed[1] == 1.0
+    assert stop.motion.pace.position[1] == knot
+    assert max(stop.verification.proved.values()) <= 1.0
 
 
 def test_an_acceleration_that_does_not_continue_the_motion_fails_the_jerk_limit(
