@@ -4,10 +4,10 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: help setup demo test lint types bench clean
+.PHONY: help setup demo test test-long lint types bench clean
 
 help:  ## this list
-	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
+	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
 
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -20,7 +20,10 @@ demo: $(READY)  ## the whole way: optimise Heli4, check it, time its cycle, writ
 	$(BIN)/linkwright run heli4 --out out/heli4
 
 test: lint types  ## ruff, mypy and the tests
-	$(BIN)/python -m pytest -n 2 --ignore=tests/bench
+	$(BIN)/python -m pytest -n 2 -m "not long" --ignore=tests/bench
+
+test-long: $(READY)  ## random trials and statistics, some minutes
+	$(BIN)/python -m pytest -n 2 -m long --ignore=tests/bench
 
 lint: $(READY)
 	$(BIN)/ruff check .
