@@ -305,7 +305,7 @@ def _vector(given: Sequence[float] | Array | None, what: str, names: tuple[str, 
     array = checked(np.asarray(given), what, names)
     if array.shape != (len(names),) or not np.isfinite(array).all():
         raise InvalidValue(what, f"{given!r:.80}", f"{len(names)} finite numbers: {', '.join(names)}")
-    return array.tolist()  # type: ignore[no-any-return]
+    return list(array.tolist())
 
 
 # What programs compute.

@@ -55,8 +55,8 @@ class Planar3RRRRanges(JointRanges):
 class Planar3RRR(Planar, RotaryLimbs):
     """Pose [x, y, theta], joints q1..q3, the arms' angles from `zero_angles`.
 
-    Usual branch: each elbow on the side towards which q_i grows, seen from the drive; with arms counted from outward, as
-    the defaults are, it lies ahead counter-clockwise and q_i is between 0 and pi around home.
+    Usual branch: each elbow on the side towards which q_i grows, seen from the drive; with arms counted from outward,
+    as the defaults are, it lies ahead counter-clockwise and q_i is between 0 and pi around home.
     """
 
     Geometry = Planar3RRRGeometry
