@@ -14,6 +14,7 @@ from trajectory.emergency_stop import EmergencyStop, emergency_stop
 from trajectory.errors import (
     InvalidPath,
     LimitsExceeded,
+    MoveRefused,
     PathBeyondLimit,
     PathRefused,
     RoughPath,
@@ -70,6 +71,7 @@ __all__ = [
     "LimitsExceeded",
     "Motion",
     "Move",
+    "MoveRefused",
     "Part",
     "Path",
     "PathBeyondLimit",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path as FilePath
 
@@ -70,6 +71,20 @@ class PathBeyondLimit(LinkwrightError):
         super().__init__(
             f"{where}: the {quantity} of {joint} is {found:.6g} {unit}; "
             f"expected from {allowed[0]:.6g} to {allowed[1]:.6g}"
+        )
+
+
+class MoveRefused(LinkwrightError):
+    """A move passes a pose that it must not: `found` says what, `time` when [s], NaN where it is not known yet."""
+
+    exit_status = 1
+
+    def __init__(self, found: str, time: float, pose: Sequence[float]) -> None:
+        self.found, self.time, self.pose = found, time, tuple(float(v) for v in pose)
+        when = "" if math.isnan(time) else f" at t = {time:.6g} s"
+        super().__init__(
+            f"move{when}, about pose ({', '.join(f'{v:.6g}' for v in self.pose)}): found {found}; "
+            "expected every pose within reach and within the ranges, and none singular"
         )
 
 
