@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from kinematics import InvalidValue, LinkwrightError, UnreachablePose
-from studies.errors import KeyPath, Problem, StudyError, dotted, spelled
+from studies.errors import ApproachFailed, KeyPath, Problem, StudyError, dotted, spelled
 from studies.toml_file import TomlFile, read_toml
 from trajectory import LimitsExceeded, PathBeyondLimit, PathRefused, RoughPath, TimingFailed
 
@@ -39,6 +39,9 @@ def told_at_key(study_file: Path) -> Iterator[None]:
     """
     try:
         yield
+    except ApproachFailed as error:
+        file = read_toml(study_file)
+        raise StudyFailed(file, _of_the_approach(file, error), error) from error
     except PathBeyondLimit as error:
         file = read_toml(study_file)
         raise StudyFailed(file, _spelling(file, ("trajectory", "limits", error.limit)), error) from error
@@ -51,6 +54,12 @@ def told_at_key(study_file: Path) -> Iterator[None]:
                 raise
         at = "limits" if isinstance(error, _OF_THE_LIMITS) else travelled(file)
         raise StudyFailed(file, ("trajectory", at), error) from error
+
+
+def _of_the_approach(file: TomlFile, error: ApproachFailed) -> KeyPath:
+    """The key at fault: the home that the file gives, where that is out of reach."""
+    given = ("home",) in file.lines or any(str(path[0]).startswith("home_") for path in file.lines)
+    return ("home",) if error.home_is_out_of_reach and given else ("trajectory", "approach")
 
 
 def refused_field(file: TomlFile, error: InvalidValue, why: str = "") -> Problem | None:

@@ -14,6 +14,7 @@ from design.certified import CertifiedRegion, certified_cylinder
 from design.certified_cells import certified_cells
 from design.level_sets import LevelSet, level_set
 from studies.map_options import InvalidOption, MapRequest, angles_of
+from studies.stages import Progress, budget_of, stage
 
 
 @dataclass(frozen=True)
@@ -94,8 +95,8 @@ def unit_of(request: MapRequest, name: str) -> str:
     return "rad" if name in angles_of(request.robot) else "m"
 
 
-def run_map(request: MapRequest, tolerance: float, certify: bool, progress: Callable[[str], None]) -> MapOutcome:
-    """Sample, and prove where asked.
+def run_map(request: MapRequest, tolerance: float, certify: bool, progress: Progress, seconds: float) -> MapOutcome:
+    """Sample, and prove where asked; each may take so many seconds.
 
     Raises:
         InvalidOption: a tolerance not above 0, or no family of regions of which something could be proved.
@@ -103,16 +104,17 @@ def run_map(request: MapRequest, tolerance: float, certify: bool, progress: Call
     """
     if not (np.isfinite(tolerance) and tolerance > 0.0):
         raise InvalidOption("--tolerance", tolerance, "a finite number > 0")
-    prove = _proof(request) if certify else None
-    progress(f"map of {request.index.name}")
-    found = level_set(request.index, request.section, request.robot.pose_names, request.bound, tolerance)
+    prove = _proof(request, seconds) if certify else None
+    with stage(f"map of {request.index.name}", progress, seconds):
+        names, limited = request.robot.pose_names, budget_of(level_set, seconds)
+        found = level_set(request.index, request.section, names, request.bound, tolerance, **limited)
     if prove is None:
         return MapOutcome(request, found, None)
-    progress("certified region")
-    return MapOutcome(request, found, prove())
+    with stage("certified region", progress, seconds):
+        return MapOutcome(request, found, prove())
 
 
-def _proof(request: MapRequest) -> Callable[[], CertifiedRegion]:
+def _proof(request: MapRequest, seconds: float) -> Callable[[], CertifiedRegion]:
     """The search for the certified region, with everything that may be wrong checked before anything runs."""
     r, option = request, "--certified"
     if r.index.name not in r.robot.margins:
@@ -120,10 +122,12 @@ def _proof(request: MapRequest) -> Callable[[], CertifiedRegion]:
     if r.bound is None:
         raise InvalidOption(option, f"no bound of {r.index.name}", "--at-least C")
     region, bound, name = _fixed(r), r.bound, r.index.name
-    measured: dict[str, Any] = {"bounds": r.fvi_bounds, "characteristic_length": r.characteristic_length}
+    search: dict[str, Any] = {"bounds": r.fvi_bounds, "characteristic_length": r.characteristic_length}
     if isinstance(region, Cylinder):
-        return lambda: certified_cylinder(r.robot, region, name, at_least=bound, **measured)
-    return lambda: certified_cells(r.robot, region, r.section.axes, name, at_least=bound, **measured)
+        search |= budget_of(certified_cylinder, seconds)
+        return lambda: certified_cylinder(r.robot, region, name, at_least=bound, **search)
+    search |= budget_of(certified_cells, seconds)
+    return lambda: certified_cells(r.robot, region, r.section.axes, name, at_least=bound, **search)
 
 
 def _fixed(request: MapRequest) -> Region:

@@ -111,8 +111,8 @@ def drive_of(drive: schema_trajectory.Drive) -> Drive:
     return Drive(drive.axes, drive.increments, drive.encoder_gear)
 
 
-def require_drive_files(study: Study, file: FilePath, asked_for: Sequence[str] | None) -> None:
-    """Write the drive files of the cycle's path to nowhere, before hours of work go into the real ones.
+def drive_file_names(study: Study, file: FilePath, asked_for: Sequence[str] | None) -> list[str]:
+    """The drive files' names, from writing those of the cycle's path to nowhere before hours of work go into them.
 
     Args:
         asked_for: formats that the command line has in place of the study's own.
@@ -122,13 +122,12 @@ def require_drive_files(study: Study, file: FilePath, asked_for: Sequence[str] |
     """
     asked = study.trajectory
     if asked is None:
-        return
+        return []
+    stems = ("cycle", "approach") if asked.approach else ("cycle",)
     try:
-        drive = drive_of(asked.drive)
-        if set(asked.files) != {"csv"}:
-            robot = robot_of(study)
-            at_rest = _along(robot, path_of(asked, robot.pose_names), asked.period)
-            drive_files("cycle", at_rest, asked.files, drive)
+        robot, drive = robot_of(study), drive_of(asked.drive)
+        at_rest = _along(robot, path_of(asked, robot.pose_names), asked.period)
+        return [name for stem in stems for name in drive_files(stem, at_rest, asked.files, drive)]
     except InvalidValue as error:
         by = f"for --format {' --format '.join(asked_for)}" if asked_for else ""
         key = ("trajectory",) if asked_for else ("trajectory", "files")

@@ -15,7 +15,7 @@ PROOFS = ("claim, at every pose", "answer", "boxes", "time [s]", "lowest sampled
 def margin_rows(outcome: Outcome) -> list[tuple[str, ...]]:
     """Under `MARGINS`: the worst of each margin."""
     wanted = {r.margin: f">= {r.at_least:g}" for r in outcome.problem.requirements}
-    if outcome.synthesis:
+    if outcome.study.optimise:
         wanted.setdefault(outcome.problem.objective, "as large as possible")
     return [
         (

@@ -5,11 +5,11 @@ import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from decimal import Decimal
 from enum import StrEnum
 from typing import Any
 
 from studies.errors import KeyPath
+from trajectory.units import in_si
 
 
 class Dimension(StrEnum):
@@ -193,12 +193,6 @@ def _in_si(value: Any, suffix: str) -> Any:
         number = float(value)
     except OverflowError:
         number = math.inf if value > 0 else -math.inf
-    match suffix:
-        case "mm":
-            # In decimal, so that 24.9 mm is the very number that 0.0249 m is.
-            return float(Decimal(repr(number)).scaleb(-3))
-        case "deg":
-            return math.radians(number)
-        case "rpm":
-            return number * 2 * math.pi / 60
+    if suffix:
+        return in_si(number, suffix)
     return value if math.isfinite(number) else number
