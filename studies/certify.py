@@ -94,7 +94,12 @@ class Question:
         return worst_poses(self.robot, self.region, margin, about=self.study.dense_sample, **self.measure)
 
     def prove(
-        self, claim: Claim, worst: WorstPoses | None, known: Certificate | None, progress: Progress, seconds: float
+        self,
+        claim: Claim,
+        worst: WorstPoses | None,
+        known: Certificate | None,
+        progress: Progress,
+        seconds: float = math.inf,
     ) -> Proof:
         """Answer a claim; one that is not decided in its time stays undecided.
 

@@ -20,33 +20,33 @@ from studies.certify import Proof, Question
 from studies.output_folder import Written
 from studies.pipeline import Outcome, Timing
 from studies.rows import Row
+from studies.stages import Lasting
 from studies.tables import MARGINS, PROOFS, margin_rows, proof_rows
 from trajectory.drive_files import FORMATS
 
 
 @contextmanager
 def progress() -> Iterator[Callable[[str], None]]:
-    """A spinner with the current step on a terminal's standard error; the lines alone in a pipe.
+    """A spinner with the current step on a terminal's standard error; in a pipe, what is lasting, a line each.
 
     Each step stays as a line but those that say the same up to their colon: they only move the count that follows it.
     """
     console = Console(stderr=True, log_path=False)
-    last = ""
-
-    def new(step: str) -> bool:
-        nonlocal last
-        before, last = last, step.partition(":")[0]
-        return last != before
-
     if not console.is_terminal:
-        yield lambda step: print(step, file=sys.stderr, flush=True) if new(step) else None
+        yield lambda step: print(step, file=sys.stderr, flush=True) if isinstance(step, Lasting) else None
         return
     with console.status("starting") as status:
+        last, shown = "", set[str]()
 
         def tell(step: str) -> None:
+            nonlocal last
+            if isinstance(step, Lasting) and step in shown:
+                return
             status.update(escape(step))
-            if new(step):
+            if (head := step.partition(":")[0]) != last:
                 console.log(escape(step), highlight=False)
+                shown.add(step)
+            last = head
 
         yield tell
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from kinematics.errors import LinkwrightError, UnreachablePose
+from kinematics.errors import LinkwrightError
 
 KeyPath = tuple[str | int, ...]  # ("requirement", 0, "margin"): table, row, key
 
@@ -81,10 +81,18 @@ class ApproachFailed(LinkwrightError):
         self.exit_status = cause.exit_status
         super().__init__(f"no approach from home {_pose(home)} to the start {_pose(start)}: {cause}")
 
+
+class HomeOutOfReach(LinkwrightError):
+    """The robot cannot stand in its home `pose`; `cause` says which limb cannot reach it."""
+
+    def __init__(self, pose: tuple[float, ...], cause: LinkwrightError) -> None:
+        self.pose, self.cause = pose, cause
+        super().__init__(f"home is out of reach: {cause}")
+
     @property
-    def home_is_out_of_reach(self) -> bool:
-        """Whether home itself is the cause."""
-        return isinstance(self.cause, UnreachablePose) and self.cause.pose == self.home
+    def shown(self) -> str:
+        """The pose for people."""
+        return _pose(self.pose)
 
 
 def _pose(pose: tuple[float, ...]) -> str:

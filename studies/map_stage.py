@@ -95,7 +95,9 @@ def unit_of(request: MapRequest, name: str) -> str:
     return "rad" if name in angles_of(request.robot) else "m"
 
 
-def run_map(request: MapRequest, tolerance: float, certify: bool, progress: Progress, seconds: float) -> MapOutcome:
+def run_map(
+    request: MapRequest, tolerance: float, certify: bool, progress: Progress, seconds: float | None = None
+) -> MapOutcome:
     """Sample, and prove where asked; each may take so many seconds.
 
     Raises:
@@ -114,7 +116,7 @@ def run_map(request: MapRequest, tolerance: float, certify: bool, progress: Prog
         return MapOutcome(request, found, prove())
 
 
-def _proof(request: MapRequest, seconds: float) -> Callable[[], CertifiedRegion]:
+def _proof(request: MapRequest, seconds: float | None) -> Callable[[], CertifiedRegion]:
     """The search for the certified region, with everything that may be wrong checked before anything runs."""
     r, option = request, "--certified"
     if r.index.name not in r.robot.margins:

@@ -106,7 +106,7 @@ def claim_file(margin: str) -> str:
     return f"{margin}.npz"
 
 
-def write_model(robot: Mechanism, study: Study, rod_middle: float | None, file: Path, force: bool) -> Path:
+def write_model(robot: Mechanism, study: Study, rod_middle: float | None, file: Path, force: bool = False) -> Path:
     """The robot as an MJCF file that starts where the study's cycle does, with its payload; else at home, empty.
 
     Args:
@@ -118,11 +118,12 @@ def write_model(robot: Mechanism, study: Study, rod_middle: float | None, file: 
 
     Raises:
         InvalidValue: the mechanism has no such model.
-        UnreachablePose: a limb cannot reach the start.
+        HomeOutOfReach, UnreachablePose: a limb cannot reach home, or the start.
         CannotWrite, FileInTheWay: the file cannot be written.
     """
-    pose, payload = np.array(robot.home), 0.0
-    if study.trajectory is not None:
+    if study.trajectory is None:
+        pose, payload = setup.home_of(robot), 0.0
+    else:
         path, payload = setup.path_of(study.trajectory, robot.pose_names), study.trajectory.payload
         (pose,) = path.evaluate(np.array(0.0), 0)
     if rod_middle is not None:

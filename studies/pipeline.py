@@ -21,7 +21,7 @@ from studies.certify import Proof, Question, prove_all
 from studies.errors import ApproachFailed, Failed, RequirementFailed
 from studies.inside import leaving
 from studies.schema import Study
-from studies.stages import Progress, budget_of, stage
+from studies.stages import Lasting, Progress, budget_of, stage
 from trajectory import Cycle, Limits, Move, Path, Setpoints, cycle_setpoints, lower_bound, there_and_back
 from trajectory.path_certificate import Way
 
@@ -209,7 +209,8 @@ def _approach(study: Study, robot: Mechanism, path: Path, limits: Limits) -> Mov
     """The move from home to the path's start, before hours of work go into what it leads to; None where none is asked.
 
     Raises:
-        ApproachFailed: it cannot be, and why; UnreachablePose: of the path's start.
+        ApproachFailed: it cannot be, and why.
+        HomeOutOfReach, UnreachablePose: of home, of the path's start.
     """
     from trajectory.moves import plan_move
 
@@ -219,7 +220,7 @@ def _approach(study: Study, robot: Mechanism, path: Path, limits: Limits) -> Mov
         return None
     (start,) = path.evaluate(np.array(0.0), 0)
     robot.require_reachable(start)
-    home = np.asarray(robot.home, dtype=float)
+    home = setup.home_of(robot)
     gentle = setup.approach_limits(asked.approach, limits, len(robot.joint_names))
     try:
         return plan_move(robot, home, start, gentle, asked.payload, asked.period, robot.actuator_units)
@@ -271,7 +272,7 @@ def with_cycle(outcome: Outcome, progress: Progress, compare: bool = True) -> Ou
             with stage("cycle of the study's own geometry", progress):
                 prototype = time_cycle(study, outcome.problem.robot)
         except LinkwrightError as error:  # it is there to compare with, and need not be able to
-            progress(f"the study's own geometry has no cycle: {error}")
+            progress(Lasting(f"the study's own geometry has no cycle to compare with: {error}"))
     return replace(outcome, on_cycle=on_cycle, timing=timing, prototype_timing=prototype)
 
 

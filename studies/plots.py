@@ -72,6 +72,7 @@ def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
                 axes.plot(*edge.T, color="#3c7a3f", linewidth=0.8, alpha=0.7)
             axes.set(title=label, xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
             axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+            axes.locator_params(nbins=5)
             axes.set_box_aspect(high - low, zoom=1.1)  # as long as the limits: equal scales
             axes.view_init(elev=18, azim=-60)
         return png(figure)

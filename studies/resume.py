@@ -8,7 +8,7 @@ from studies.output_folder import OutputFolder
 from studies.outputs import write_optimum
 from studies.pipeline import Outcome, certified, designed, with_cycle
 from studies.schema import Study
-from studies.stages import Progress
+from studies.stages import Lasting, Progress
 
 
 def run_into(folder: OutputFolder, study: Study, fresh: bool, progress: Progress) -> Outcome:
@@ -23,7 +23,9 @@ def run_into(folder: OutputFolder, study: Study, fresh: bool, progress: Progress
     """
     known = None if fresh else known_optimum(folder, study)
     if known is not None:
-        progress(f"optimum of an earlier run taken up, the design question is the same: {folder.path / FILE}")
+        progress(
+            Lasting(f"{folder.path / FILE}: taken up, it answers the same design question (--fresh optimises anew)")
+        )
         robot = known.robot(study)
         outcome = designed(study, robot, progress, str(known.data["made_by"]["solver_status"]))
         certificates = committed_certificates(study, folder.path, robot)
@@ -31,9 +33,9 @@ def run_into(folder: OutputFolder, study: Study, fresh: bool, progress: Progress
         outcome, certificates = designed(study, None, progress), {}
         if study.optimise is not None:
             written = write_optimum(outcome, folder)
-            progress(f"optimum written: {folder.path / FILE}")
+            progress(Lasting(f"{folder.path / FILE}: written, before the cycle and the proofs"))
             for path in written.left:
-                progress(f"{path}: of an earlier run, until this one ends")
+                progress(Lasting(f"{path}: left as an earlier command wrote it, until this one ends"))
     return certified(with_cycle(outcome, progress), certificates, progress)
 
 

@@ -12,12 +12,12 @@ import numpy as np
 
 from design import Bounds, Box, Cylinder, Region, Requirement, SumLimit
 from design.nlp import Problem
-from kinematics import FviBounds, InvalidValue, Mechanism
+from kinematics import FviBounds, InvalidValue, Mechanism, UnreachablePose
 from kinematics.drives import to_actuators
 from kinematics.geometry import GeometryRecord
 from studies import schema_path, schema_trajectory
 from studies.at_key import refused_field, travelled
-from studies.errors import StudyError
+from studies.errors import HomeOutOfReach, StudyError
 from studies.hardware import inertia_of, ranges_of
 from studies.inside import leaving
 from studies.mechanisms import mechanism_class
@@ -28,6 +28,7 @@ from trajectory.cycle import Timing
 from trajectory.drive_files import Drive, drive_files
 from trajectory.pose_bounds import PoseBounds
 
+Array = np.ndarray
 OBJECTIVE = "fvi"
 
 
@@ -35,6 +36,20 @@ def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
     """The study's mechanism, masses and joint ranges; `geometry` in place of the prototype with the study's changes."""
     kind = mechanism_class(study.mechanism)
     return kind(geometry or kind.Geometry(**study.geometry), inertia_of(study), ranges_of(study))
+
+
+def home_of(robot: Mechanism) -> Array:
+    """(n,) the pose that the robot works around.
+
+    Raises:
+        HomeOutOfReach: a limb cannot reach it.
+    """
+    home = np.asarray(robot.home, dtype=float)
+    try:
+        robot.require_reachable(home)
+    except UnreachablePose as error:
+        raise HomeOutOfReach(tuple(home.tolist()), error) from error
+    return home
 
 
 def region_of(study: Study) -> Region:
@@ -102,8 +117,8 @@ def require_cycle_inside(study: Study, file: FilePath) -> None:
         pose = ", ".join(f"{v:.4g}" for v in found.pose)
         read = read_toml(file)
         key = travelled(read)
-        expected = f"a {key} inside the region, {region_of(study)}"
-        raise StudyError([read.problem(("trajectory", key), f"the pose ({pose}) on it", expected)])
+        expected = f"a {key[-1]} inside the region, {region_of(study)}"
+        raise StudyError([read.problem(key, f"the pose ({pose}) on it", expected)])
 
 
 def drive_of(drive: schema_trajectory.Drive) -> Drive:

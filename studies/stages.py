@@ -3,23 +3,39 @@
 from __future__ import annotations
 
 import inspect
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
 Progress = Callable[[str], None]
+LONG = 2.0  # s: a stage that takes longer is told in a pipe, too
+
+
+class Lasting(str):
+    """A line of progress that is told in a pipe, too."""
+
+    __slots__ = ()
 
 
 @contextmanager
 def stage(name: str, progress: Progress, seconds: float | None = None) -> Iterator[None]:
-    """Tell when a stage starts, and when it ends, with its budget in seconds where it has one."""
-    progress(f"{name}: at most {seconds:g} s" if seconds is not None else f"{name}: started")
+    """Tell that a stage runs and, where it was long, when it ends; with its budget in seconds where it has one."""
+    start = f"{name}: at most {seconds:g} s" if seconds is not None else f"{name} runs"
+    progress(start)
+    waiting = threading.Timer(LONG, progress, [Lasting(start)])
+    waiting.daemon = True
+    waiting.start()
     started = time.perf_counter()
-    yield
-    of = f" of {seconds:g} s" if seconds is not None else ""
-    progress(f"{name} ended: {time.perf_counter() - started:.1f} s{of}")
+    try:
+        yield
+    finally:
+        waiting.cancel()
+        if (took := time.perf_counter() - started) > LONG:
+            budget = f" of {seconds:g} s" if seconds is not None else ""
+            progress(Lasting(f"{name} took {took:.1f} s{budget}"))
 
 
-def budget_of(function: Callable[..., Any], seconds: float) -> dict[str, Any]:
+def budget_of(function: Callable[..., Any], seconds: float | None) -> dict[str, Any]:
     return {"seconds": seconds} if "seconds" in inspect.signature(function).parameters else {}

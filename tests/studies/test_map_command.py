@@ -18,6 +18,7 @@ from studies.locate import study_path
 from studies.map_console import print_map
 from studies.map_options import InvalidOption, MapRequest, map_request
 from studies.map_stage import run_map
+from studies.output_folder import Written
 from tests.studies.command_line import linkwright
 
 CORNER = ("--over", "y_mm=200:300", "--over", "z=0.3:0.6")
@@ -134,7 +135,7 @@ def test_what_cannot_be_proved_is_refused_before_anything_runs(asked: Any) -> No
 
 
 def test_where_no_node_keeps_the_bound_the_grid_s_step_is_said(capsys: pytest.CaptureFixture[str]) -> None:
-    print_map(run_map(redundant(at=("theta=0",), at_least=99.0), 1e-3, False, lambda _: None), [], False)
+    print_map(run_map(redundant(at=("theta=0",), at_least=99.0), 1e-3, False, lambda _: None), Written(), False)
     assert "no node keeps the bound; they are 0.0012 m and 0.0012 m apart" in " ".join(capsys.readouterr().out.split())
 
 
