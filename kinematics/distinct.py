@@ -18,3 +18,19 @@ def distinct(apart: np.ndarray, regularity: np.ndarray) -> list[int]:
     """
     blur = _EXACT + _ROUNDING / np.maximum(np.abs(regularity), 1e-8)
     return [i for i in range(len(apart)) if not (apart[i, :i] < blur[i]).any()]
+
+
+def gaps(poses: np.ndarray, pose: np.ndarray, size: float) -> np.ndarray:
+    """(...,) largest difference of poses [x, y, z, ...] (..., n) from one (n,): a length over the size, or an angle."""
+    unit = np.ones(pose.shape[-1])
+    unit[:3] = size
+    largest: np.ndarray = (np.abs(poses - pose) / unit).max(axis=-1)
+    return largest
+
+
+def working_first(poses: np.ndarray, working: np.ndarray, size: float) -> np.ndarray:
+    """Poses (k, n) in their order, but first the one that is nearest to the working one (n,), if that exists."""
+    if not len(poses) or not np.isfinite(working).all():
+        return poses
+    nearest = int(gaps(poses, working, size).argmin())
+    return np.concatenate([poses[[nearest]], np.delete(poses, nearest, axis=0)])

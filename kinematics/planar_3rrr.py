@@ -55,8 +55,8 @@ class Planar3RRRRanges(JointRanges):
 class Planar3RRR(Planar, RotaryLimbs):
     """Pose [x, y, theta], joints q1..q3, the arms' angles from `zero_angles`.
 
-    Working mode: seen from B_i, the elbow is on the left of the line to A_i; with arms counted from outward, as the
-    defaults are, each elbow lies ahead counter-clockwise and q_i is between 0 and pi around home.
+    Usual branch: each elbow on the side towards which q_i grows, seen from the drive; with arms counted from outward, as
+    the defaults are, it lies ahead counter-clockwise and q_i is between 0 and pi around home.
     """
 
     Geometry = Planar3RRRGeometry
@@ -82,7 +82,7 @@ class Planar3RRR(Planar, RotaryLimbs):
         rods = g.rod_lengths[0] * g.rod_lengths[1] * g.rod_lengths[2]
         return g.arm_lengths * g.rod_lengths, Planar.determinant_scale(g) * rods
 
-    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, drives, rods and platform."""
         bodies = self.limb_bodies(pose, joints, g, self.inertia.link_mass, ["platform"] * 3)
         self.platform_bodies(pose, g, payload, bodies)

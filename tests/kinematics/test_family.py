@@ -238,8 +238,8 @@ def test_a_resting_robot_bears_its_weight(kind):
 @EACH
 def test_the_drawing_starts_at_the_base_and_ends_at_the_platform(kind):
     robot = robots(kind)[1]
-    lines = robot.polylines(kind.home)
-    ends = ByHand(robot).platform(kind.home)
+    lines = robot.polylines(kind().home)
+    ends = ByHand(robot).platform(kind().home)
     limbs = [line for name, line in lines.items() if name.startswith(("rod", "leg"))]
     assert np.abs(np.array([line[-1] for line in limbs]) - ends).max() < 1e-14
     assert all(np.isfinite(line).all() and line.shape[1] == 3 for line in lines.values())
@@ -247,7 +247,7 @@ def test_the_drawing_starts_at_the_base_and_ends_at_the_platform(kind):
 
 @EACH
 def test_a_box_by_the_poses_names_is_searched_for_its_worst_pose(kind):
-    robot, centre = kind(), np.array(kind.home)
+    robot, centre = kind(), np.array(kind().home)
     names = kind.pose_names
     half = np.where([i in kind.rotations for i in range(len(names))], 0.2, 0.02)
     region = Box(**{name: (c - h, c + h) for name, c, h in zip(names, centre, half, strict=True)})

@@ -237,7 +237,7 @@ def test_leg_power_is_the_change_of_kinetic_and_potential_energy(seed: int) -> N
     """Along pose(t) = p + v t + a t^2 / 2, by central differences of the energy written by hand."""
     rng = np.random.default_rng(seed)
     robot = GoughStewart(GoughStewart.Geometry(Z=random_frame(rng)))
-    start = robot.initial_pose
+    start = robot.home
     v, a, payload, h = 0.3 * rng.normal(size=6), rng.normal(size=6), 4.0, 1e-4
     i = robot.inertia
 

@@ -14,7 +14,7 @@ def test_a_million_random_poses_come_back_from_their_leg_lengths_and_the_last_po
     for _ in range(10):
         poses = random_poses(rng, 100_000)
         last = poses + rng.uniform(-1e-4, 1e-4, poses.shape)
-        found = robot.solve_forward(robot.inverse(poses), last)
+        found = robot.newton(robot.inverse(poses), last)
         assert found.converged.all()
         assert np.abs(found.pose - poses).max() < 1e-11
 
@@ -56,15 +56,15 @@ def test_newtons_method_squares_the_error_at_each_step() -> None:
 def test_forward_says_where_it_did_not_converge_and_gives_nan_there() -> None:
     robot = GoughStewart()
     joints = np.array([robot.inverse(np.array(robot.home)), [3.0, 0.1, 3.0, 0.1, 3.0, 0.1]])
-    found = robot.solve_forward(joints)
+    found = robot.newton(joints)
     np.testing.assert_array_equal(found.converged, [True, False])
     np.testing.assert_array_equal(np.isnan(found.pose).all(axis=1), [False, True])
     assert found.iterations[1] == 30
     assert found.residual[0] < 1e-14 < 1e-3 < found.residual[1]
     near = robot.inverse(np.array(robot.home) + 0.1)
-    assert not robot.solve_forward(near, iterations=1).converged
-    assert np.isnan(robot.solve_forward(near, iterations=1).pose).all()
-    assert robot.solve_forward(near, iterations=6).converged
+    assert not robot.newton(near, iterations=1).converged
+    assert np.isnan(robot.newton(near, iterations=1).pose).all()
+    assert robot.newton(near, iterations=6).converged
 
 
 def test_what_forward_finds_from_afar_closes_every_leg() -> None:
@@ -72,7 +72,7 @@ def test_what_forward_finds_from_afar_closes_every_leg() -> None:
     rng = np.random.default_rng(13)
     for robot in (GoughStewart(), random_robot(rng)):
         joints = robot.inverse(np.repeat(anywhere(rng, 200), 10, axis=0))
-        found = robot.solve_forward(joints, anywhere(rng, 2000))
+        found = robot.newton(joints, anywhere(rng, 2000))
         assert found.converged.mean() > 0.5
         assert np.abs(robot.inverse(found.pose) - joints)[found.converged].max() < 1e-12
 

@@ -137,10 +137,10 @@ def test_friction_of_the_drives_is_mujocos(kind):
 
 def test_what_cannot_be_exported_is_named():
     with pytest.raises(InvalidValue, match="Delta; expected one of Heli4, Redundant3T1R, Peppermill, GoughStewart"):
-        mjcf(Delta(), Delta.home)
+        mjcf(Delta(), Delta().home)
     with pytest.raises(UnreachablePose, match="limb"):
         mjcf(Heli4(), (0.0, 0.0, -3.0, 0.0))
     with pytest.raises(InvalidValue, match="payload: found -1"):
-        mjcf(Heli4(), Heli4.home, -1.0)
+        mjcf(Heli4(), Heli4().home, -1.0)
     with pytest.raises(InvalidValue, match="one pose"):
-        mjcf(GoughStewart(), [GoughStewart.home] * 2)
+        mjcf(GoughStewart(), [GoughStewart().home] * 2)

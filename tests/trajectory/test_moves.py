@@ -27,7 +27,7 @@ from trajectory import moves as module
 from trajectory import write_setpoints as write
 
 UNITS = ("rad",) * 4
-HOME = np.array(Heli4.home)
+HOME = np.array(Heli4().home)
 LIMITS = Limits(speed=20.0, acceleration=250.0, jerk=1e5, torque=127.0)
 
 
