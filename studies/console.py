@@ -21,7 +21,7 @@ from studies.output_folder import Written
 from studies.pipeline import Outcome, Timing
 from studies.rows import Row
 from studies.stages import Lasting
-from studies.tables import MARGINS, PROOFS, margin_rows, proof_rows
+from studies.tables import PROOFS, margin_columns, margin_rows, proof_rows
 from trajectory.drive_files import FORMATS
 
 
@@ -80,7 +80,7 @@ def print_outcome(outcome: Outcome, written: Written, as_json: bool) -> None:
         print_json(_outcome_data(outcome, written))
         return
     sampled = next(iter(outcome.worst.values())).sampled
-    print_table(f"Worst over the region ({sampled} poses and descents)", MARGINS, margin_rows(outcome))
+    print_table(f"Worst over the region ({sampled} poses and descents)", margin_columns(outcome), margin_rows(outcome))
     if outcome.proofs:
         print_table("Proofs over the region", PROOFS, proof_rows(outcome.proofs))
     changed = outcome.problem.robot.geometry.as_dict()
@@ -90,16 +90,18 @@ def print_outcome(outcome: Outcome, written: Written, as_json: bool) -> None:
         if value != changed[name]
     ]
     if geometry:
-        print_table("Geometry", ("field", "prototype", "result"), geometry)
+        print_table("Geometry", ("field", outcome.before, "result"), geometry)
     if outcome.active:
         print_table("Held back by", ("active constraint",), [(item,) for item in outcome.active])
     if outcome.timing:
-        print_timing(outcome.timing, Written(), False, outcome.prototype_timing)
+        print_timing(outcome.timing, Written(), False, (outcome.before, outcome.prototype_timing))
     print_files(written)
 
 
-def print_timing(timing: Timing, written: Written, as_json: bool, prototype: Timing | None = None) -> None:
-    """The cycle's figures and peaks; the prototype's figures beside them where they are known."""
+def print_timing(
+    timing: Timing, written: Written, as_json: bool, before: tuple[str, Timing | None] = ("", None)
+) -> None:
+    """The cycle's figures and peaks; beside them those of a geometry with a name, where they are known."""
     robot, figures = timing.cycle.robot, timing.figures()
     if as_json:
         made_for = {"mechanism": type(robot).__name__, "geometry_hash": robot.geometry.digest}
@@ -119,10 +121,11 @@ def print_timing(timing: Timing, written: Written, as_json: bool, prototype: Tim
         return
     names = [name for name in figures if name != "peak_over_limit"]
     title = f"Cycle of {type(robot).__name__}, geometry {robot.geometry.digest[:12]}"
-    if prototype:
-        before = prototype.figures()
-        rows = [(name, _figure(before[name]), _figure(figures[name])) for name in names]
-        print_table(title, ("figure", "prototype", "result"), rows)
+    label, timing_before = before
+    if timing_before:
+        known = timing_before.figures()
+        rows = [(name, _figure(known[name]), _figure(figures[name])) for name in names]
+        print_table(title, ("figure", label, "result"), rows)
     else:
         print_table(title, ("figure", "value"), [(name, _figure(figures[name])) for name in names])
     proved = timing.cycle.certificate

@@ -84,10 +84,10 @@ class Outcome:
         synthesis: how it was found; None where the geometry was given, or found by an earlier run.
         solver_status: the solver's last word on the geometry, or that it was given.
         worst: the worst pose of each margin, by its name.
-        prototype: the same for the prototype, where a synthesis changed it.
+        prototype: the same for the study's own geometry, where the robot has another.
         on_cycle: the worst value of each requirement's margin on the cycle; empty without one.
         timing: the cycle; None where the study asks for none.
-        prototype_timing: the prototype's cycle, to compare with; None where there is none, or no answer.
+        prototype_timing: the cycle of the study's own geometry, to compare with; None without one.
         proofs: what was tried to prove of every pose; empty before that stage.
     """
 
@@ -103,6 +103,11 @@ class Outcome:
     timing: Timing | None = None
     prototype_timing: Timing | None = None
     proofs: tuple[Proof, ...] = ()
+
+    @property
+    def before(self) -> str:
+        """What the study's own geometry is called: the mechanism's prototype, or given where the study changes that."""
+        return "given" if self.study.geometry else "prototype"
 
     @property
     def question(self) -> Question:
@@ -259,7 +264,7 @@ def with_cycle(outcome: Outcome, progress: Progress, compare: bool = True) -> Ou
     """The outcome with the study's cycle, where it asks for one.
 
     Args:
-        compare: time it on the prototype too, where a synthesis changed that.
+        compare: time it on the study's own geometry too, where the robot has another.
     """
     study, prototype = outcome.study, None
     if study.trajectory is None:

@@ -13,7 +13,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from kinematics.motion import JointMotion
 from studies import plots
 from studies.pipeline import Outcome, Timing
-from studies.tables import MARGINS, PROOFS, margin_rows, proof_rows
+from studies.tables import PROOFS, margin_columns, margin_rows, proof_rows
 from trajectory.motion import motion_of
 
 Pictures = list[tuple[str, bytes]]  # title and PNG
@@ -45,7 +45,8 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
         bounds=outcome.problem.fvi_bounds,
         region=repr(outcome.region),
         geometry=_geometry_rows(outcome),
-        margin_columns=MARGINS,
+        before=outcome.before,
+        margin_columns=margin_columns(outcome),
         margins=margin_rows(outcome),
         proof_columns=PROOFS,
         proofs=proof_rows(outcome.proofs),
@@ -65,7 +66,7 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
 
 
 def _geometry_rows(outcome: Outcome) -> list[tuple[str, str, str, str]]:
-    """Field, prototype, result, what it means."""
+    """Field, the study's own, result, what it means."""
     before, after = outcome.problem.robot.geometry, outcome.robot.geometry
     return [
         (name, _numbers(getattr(before, name)), _numbers(getattr(after, name)), doc)
@@ -75,7 +76,7 @@ def _geometry_rows(outcome: Outcome) -> list[tuple[str, str, str, str]]:
 
 def _timing_rows(outcome: Outcome) -> list[tuple[str, list[tuple[str, str]]]]:
     """Label, figures of each cycle that was timed."""
-    timings = {"result": outcome.timing, "prototype": outcome.prototype_timing}
+    timings = {"result": outcome.timing, outcome.before: outcome.prototype_timing}
     return [(label, _timing_figures(timing)) for label, timing in timings.items() if timing]
 
 
@@ -107,7 +108,7 @@ def pictures_of(outcome: Outcome) -> Pictures:
     """The mechanism, the maps of its margins, the path and the joints' motion."""
     robots = {"result": outcome.robot}
     if outcome.prototype is not None:
-        robots = {"prototype": outcome.problem.robot, **robots}
+        robots = {outcome.before: outcome.problem.robot, **robots}
     pictures = [("Mechanism in its workspace, whose edge is green", plots.mechanism_picture(robots, outcome.region))]
     bounds = {r.margin: r.at_least for r in outcome.problem.requirements} | {outcome.problem.objective: 1.0}
     mapped = _MAPPED if plots.can_be_mapped(outcome.region, outcome.robot.pose_names) else ()

@@ -8,12 +8,16 @@ from studies.certify import Proof
 from studies.pipeline import Outcome
 from studies.rows import shown_pose
 
-MARGINS = ("margin", "wanted", "prototype, worst", "result, worst", "at pose")
 PROOFS = ("claim, at every pose", "answer", "boxes", "time [s]", "lowest sampled", "above the bound by", "at pose")
 
 
+def margin_columns(outcome: Outcome) -> tuple[str, ...]:
+    """Of `margin_rows`."""
+    return "margin", "wanted", f"{outcome.before}, worst", "result, worst", "at pose"
+
+
 def margin_rows(outcome: Outcome) -> list[tuple[str, ...]]:
-    """Under `MARGINS`: the worst of each margin."""
+    """Under `margin_columns`: the worst of each margin."""
     wanted = {r.margin: f">= {r.at_least:g}" for r in outcome.problem.requirements}
     if outcome.study.optimise:
         wanted.setdefault(outcome.problem.objective, "as large as possible")
