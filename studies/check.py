@@ -145,6 +145,8 @@ def _entries(claimed: Optimum, found: Optimum, study: Study) -> list[Row]:
             rows.append(Row(key, f"in {have} only", f"not in {lack}", -1.0))
         elif isinstance(ours[key], float):
             rows.append(agrees(key, theirs[key], ours[key]))
+        elif key == "made_by.geometry_hash":
+            rows.append(same_digest(key, theirs[key], ours[key]))
         else:
             rows.append(same(key, theirs[key], ours[key]))
     missing = set(found.data["worst_pose"]) - set(claimed.data["worst_pose"])

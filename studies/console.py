@@ -185,11 +185,15 @@ def print_checks(found: dict[str, list[Row]], as_json: bool, verbose: bool) -> N
             print(f"{name}: {verdict}")
             continue
         table = [
-            ("ok" if row.holds else "FAIL", row.what, row.expected, row.found, f"{row.margin:.3g}", row.where)
+            ("ok" if row.holds else "FAIL", row.what, row.expected, _unless_same(row), f"{row.margin:.3g}", row.where)
             for row in rows
             if verbose or not row.holds
         ]
         print_table(f"{name}: {verdict}", ("", "claim", "expected", "found", "margin", "at pose"), table)
+
+
+def _unless_same(row: Row) -> str:
+    return "the same" if row.found == row.expected else row.found
 
 
 def _outcome_data(outcome: Outcome, written: Written) -> dict[str, Any]:
