@@ -18,6 +18,8 @@ from studies import setup
 from studies.schema import Study
 from studies.stages import Progress, budget_of
 
+_LEAST = 1e-3  # s: a claim has this even where the budget is used up
+
 
 @dataclass(frozen=True)
 class Claim:
@@ -151,7 +153,7 @@ class Question:
             best = best_bound(self.robot, self.region, claim.margin, tolerance, **search)
             if best is not None and (required is None or best.certificate.at_least >= required):
                 return best.certificate
-        search |= budget_of(certify, max(0.0, ends - time.perf_counter()))
+        search |= budget_of(certify, max(_LEAST, ends - time.perf_counter()))
         return certify(self.robot, self.region, claim.margin, at_least=required or 0.0, **search)
 
 
@@ -194,6 +196,6 @@ def prove_claims(
     ends = time.perf_counter() + question.study.budget.prove
     proofs = []
     for k, claim in enumerate(claims):
-        seconds = max(0.0, ends - time.perf_counter()) / (len(claims) - k)
+        seconds = max(_LEAST, ends - time.perf_counter()) / (len(claims) - k)
         proofs.append(question.prove(claim, worst.get(claim.margin), known.get(claim.margin), progress, seconds))
     return tuple(proofs)

@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import sys
+import warnings
 from typing import Any, NoReturn
 
 import typer
@@ -13,6 +14,10 @@ import typer
 
 def ended_by(app: typer.Typer) -> None:
     """Run the command line, and leave the process with its exit status."""
+    if not sys.warnoptions:
+        warnings.simplefilter(
+            "ignore"
+        )  # of the libraries, for programmers; what goes wrong is checked, and told in words
     signal.signal(signal.SIGINT, _interrupted)
     signal.signal(signal.SIGTERM, _interrupted)
     try:

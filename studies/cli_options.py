@@ -29,5 +29,5 @@ ForceOption = Annotated[
 ]
 SecondsOption = Annotated[
     float | None,
-    typer.Option("--seconds", help="What each stage may take, in place of the study's [budget] (default there: 60)."),
+    typer.Option("--seconds", help="What each stage may take, in place of the study's [budget]."),
 ]

@@ -14,6 +14,7 @@ from kinematics import FviBounds, Mechanism
 from kinematics.errors import LinkwrightError
 from studies import setup
 from studies.schema import Study
+from studies.units import LARGEST
 from trajectory.units import in_si
 
 DEFAULT = "fvi"
@@ -136,8 +137,8 @@ def _assignments(
             values = tuple(in_si(part.strip(), suffix) for part in right.split(separator))
         except ValueError:
             raise InvalidOption(option, text, f"numbers with '{separator}' between them") from None
-        if not all(math.isfinite(v) for v in values):
-            raise InvalidOption(option, text, "finite numbers")
+        if not all(abs(v) <= LARGEST for v in values):  # NaN is not
+            raise InvalidOption(option, text, f"numbers of a size up to {LARGEST:g}")
         found[name] = values
     return found
 

@@ -162,8 +162,11 @@ def require_free(file: Path, force: bool, content: str | bytes | None = None) ->
     Raises:
         FileInTheWay, CannotWrite: it is there, or it is a folder.
     """
-    if file.is_dir():
-        raise CannotWrite(file, "it is a folder")
+    try:
+        if file.is_dir():
+            raise CannotWrite(file, "it is a folder")
+    except OSError as error:  # a name that the system does not take
+        raise CannotWrite(file, error.strerror or str(error)) from error
     if os.path.lexists(file) and not force and not (content is not None and _has(file, _sha256(content))):
         raise FileInTheWay(file)
 

@@ -107,12 +107,12 @@ Seconds = Annotated[Positive, Key("a time > 0 (s)")]
 class Budget(Model):
     """How long a stage may take; what it has reached by then stands, and is reported."""
 
-    optimise: Seconds = 60.0
-    """The search for the best geometry [s]."""
-    prove: Seconds = 60.0
-    """All claims together [s]; what is not decided by then is reported as undecided."""
+    optimise: Seconds = 90.0
+    """Of the search for the best geometry [s]; one that is not found by then is none, and the best seen is told."""
+    prove: Seconds = 40.0
+    """Of all claims together [s]; what is not decided by then is reported as undecided."""
     map: Seconds = 60.0
-    """The certified part of a map [s]."""
+    """Of a map, and of its certified part [s]."""
 
     @classmethod
     def each(cls, seconds: float) -> Self:

@@ -3,7 +3,7 @@
 import difflib
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any
@@ -39,6 +39,9 @@ _UNIT_WORD = re.compile(
     "deg(rees?)?|rad(s|ians?)?|grad|turns?|rev|rp[ms]|hz|[cdkmnu]?m|micron|in(ch(es)?)?|ft|feet|mil"
     "|[mu]?s|sec|min|h|[km]?n|nmm|k?g|lbs?|per"
 )
+
+
+SMALLEST, LARGEST = 1e-15, 1e15  # in SI: beyond these no length, time, mass or limit of a machine is meant
 
 
 @dataclass(frozen=True)
@@ -126,7 +129,11 @@ class Conversion:
 
     def _value(self, value: Any, node: Key | Table, suffix: str, path: KeyPath) -> Any:
         if isinstance(node, Key):
-            return _in_si(value, suffix)
+            converted = _in_si(value, suffix)
+            if odd := [number for number in _numbers(converted) if not _is_a_size(number)]:
+                found, expected = f"{odd[0]:g} in SI", f"0, or a number of a size from {SMALLEST:g} to {LARGEST:g}"
+                self.findings.append(Finding(self.spelling[path], found, expected))
+            return converted
         if isinstance(value, list):
             return tuple(self._value(row, node, "", (*path, i)) for i, row in enumerate(value))
         return self.to_si(value, node, path) if isinstance(value, dict) else value
@@ -182,6 +189,19 @@ def _spellings(name: str, key: Key) -> str:
 def _all_spellings(table: Table) -> list[str]:
     suffixed = [f"{name}_{key.suffix}" for name, key in table.keys.items() if isinstance(key, Key) and key.suffix]
     return [*table.keys, *suffixed]
+
+
+def _numbers(value: Any) -> Iterator[float]:
+    """The finite numbers of a value."""
+    if isinstance(value, tuple):
+        for entry in value:
+            yield from _numbers(entry)
+    elif isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
+        yield value
+
+
+def _is_a_size(number: float) -> bool:
+    return number == 0.0 or SMALLEST <= abs(number) <= LARGEST
 
 
 def _in_si(value: Any, suffix: str) -> Any:

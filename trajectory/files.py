@@ -28,7 +28,7 @@ def require_writable(folder: Path) -> None:
         CannotWrite: with the path and the system's reason.
     """
     with _told(folder):
-        if folder.is_file():
+        if folder.exists() and not folder.is_dir():
             raise CannotWrite(folder, "it is a file; expected a folder")
         made = _make(folder)
         try:
