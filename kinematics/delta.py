@@ -64,7 +64,7 @@ class DeltaInertia(ArmInertia):
 
 
 class Delta(RotaryLimbs):
-    """Pose [x, y, z] of the plate's centre, joints q1..q3 measured from e_z outward; elbows out unless `home_joints` say."""
+    """Pose [x, y, z] of the plate's centre, joints q1..q3 measured from e_z outward; elbows out, usually."""
 
     Geometry = DeltaGeometry
     Inertia = DeltaInertia

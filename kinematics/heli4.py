@@ -204,7 +204,7 @@ class Heli4(RotaryLimbs, RodLevel):
         return 1
 
     def _on_sheet(self, joints: Array, sheet: int) -> Array:
-        """(..., 4) -> (..., 4): both pairs of limbs on the lower sheet (1), the quartic's smallest real root, or upper."""
+        """(..., 4) -> (..., 4): both pairs of limbs on the lower sheet (1), the smallest real root, or the upper."""
         quartic, kappa = evaluate(self.program(_quartic), joints)
         signs = np.where(np.arange(4, -1, -1) % 2, sheet, 1)  # of w in place of -w
         w = sheet * real_roots(quartic * signs, most=1)[..., 0]

@@ -189,8 +189,15 @@ class Mechanism(Definition):
         """
         if name == "reach":
             return np.asarray(self._reach(pose).min(axis=-1))
+        program = self.margin_program(name, bounds, characteristic_length)
+        return evaluate(program, self._poses(pose), blank=True)[0][..., 0]
+
+    def margin_program(
+        self, name: str, bounds: FviBounds | None = None, characteristic_length: float | None = None
+    ) -> BlockProgram:
+        """What computes a margin other than reach: at a pose, the margin and a number that is NaN out of reach."""
         length = self._length(characteristic_length)
-        return self._evaluate(_margin, pose, name, bounds or self.fvi_bounds, length)[0][..., 0]
+        return self.program(_within_reach, _margin, name, bounds or self.fvi_bounds, length)
 
     def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
         """A margin's components in the model's symbols `pose` and `geometry`, each to be at least the bound.
@@ -305,7 +312,7 @@ def _vector(given: Sequence[float] | Array | None, what: str, names: tuple[str, 
     array = checked(np.asarray(given), what, names)
     if array.shape != (len(names),) or not np.isfinite(array).all():
         raise InvalidValue(what, f"{given!r:.80}", f"{len(names)} finite numbers: {', '.join(names)}")
-    return array.tolist()  # type: ignore[no-any-return]
+    return list(array.tolist())
 
 
 # What programs compute.

@@ -220,7 +220,7 @@ class Par4(RotaryLimbs):
         return self._outermost(joints, self._side) if self._side else continued(self, joints, self.home)
 
     def assembly_modes(self, joints: Array) -> Array:
-        """(4,) -> (k, 4), every isolated real pose with these joints, at most eight; the working one first, then from below."""
+        """(4,) -> (k, 4), every isolated real pose with these joints, at most eight; the working one first."""
         joints = self._one(joints)
         _, poses = self._candidates(joints[None], every=True)
         poses = self._polished(poses, np.broadcast_to(joints, poses.shape), 20)

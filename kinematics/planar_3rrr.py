@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.bodies import Bodies
-from kinematics.geometry import angle, length
+from kinematics.geometry import GeometryRecord, angle, length
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Array
 from kinematics.planar import AZIMUTHS, Planar, PlanarGeometry, PlanarInertia
@@ -55,8 +55,8 @@ class Planar3RRRRanges(JointRanges):
 class Planar3RRR(Planar, RotaryLimbs):
     """Pose [x, y, theta], joints q1..q3, the arms' angles from `zero_angles`.
 
-    Usual branch: each elbow on the side towards which q_i grows, seen from the drive; with arms counted from outward, as
-    the defaults are, it lies ahead counter-clockwise and q_i is between 0 and pi around home.
+    Usual branch: seen from B_i, the elbow is on the left of the line to A_i; with arms counted from outward, as the
+    defaults are, each elbow lies ahead counter-clockwise and q_i is between 0 and pi around home.
     """
 
     Geometry = Planar3RRRGeometry
@@ -70,6 +70,11 @@ class Planar3RRR(Planar, RotaryLimbs):
     def limbs(g: SimpleNamespace) -> Limbs:
         """In the plane z = 0."""
         return Limbs(Planar.base_points(g), *radial_directions(g.zero_angles), g.arm_lengths, g.rod_lengths)
+
+    @classmethod
+    def usual_branches(cls, home: Array, geometry: GeometryRecord) -> tuple[int, ...]:  # noqa: ARG003
+        """All elbows on the left, wherever the arms are counted from."""
+        return (1, 1, 1)
 
     @classmethod
     def circles(cls, joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:

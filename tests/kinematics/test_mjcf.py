@@ -111,7 +111,7 @@ def test_a_robot_let_go_keeps_its_energy(kind, uniform):
 def test_masses_are_ours_and_nothing_else(kind):
     robot = kind()
     model = loaded(robot, robot.home, PAYLOAD)[0]
-    symbols = kind.model()
+    symbols = robot.model()
     bodies = robot.bodies(symbols.pose, symbols.joints, symbols.g, PAYLOAD)
     assert model.body_mass.sum() == pytest.approx(sum(p.mass for p in bodies.all_particles()), abs=1e-11)
     assert sorted(model.actuator(k).name for k in range(model.nu)) == sorted(robot.actuator_names)
