@@ -20,6 +20,7 @@ import numpy as np
 
 from design.branch_and_bound import Search, search
 from design.lower_bounds import LowerBounds
+from design.refutation import Refuter
 from design.region import Region
 from design.search import worst_poses
 from design.statement import Statement
@@ -31,6 +32,7 @@ from kinematics.shown import rounded_down
 Array = np.ndarray
 Progress = Callable[[str], None]
 MOST_BOXES = 4_000_000
+EDITION = 2  # of what a certificate claims beside its margin; since 2: that every limb reaches
 SEED = 20_000  # poses of the grid that looks for a counterexample first
 _MOST_PER_COORDINATE = 200
 
@@ -43,9 +45,10 @@ class Certificate:
         mechanism, digest, ranges: class name, SHA-256 of the geometry and of the joints' ranges.
         region, margin, at_least: the claim.
         bounds, characteristic_length: what the FVI is measured with; length in metres.
-        version: of the program that made it.
+        version, edition: of the program that made it, and `EDITION` then.
         status: "proved", "refuted" or "undecided".
-        counterexample: (n,) a pose where plain arithmetic finds the margin below the bound or a limb that cannot reach.
+        counterexample: (n,) a pose where the margin is below the bound beyond rounding, or that a limb cannot reach.
+        within_reach: whether every limb reaches the counterexample; True without one.
         boxes: how many boxes were bounded.
         codes: (nodes,) the tree of boxes by level; see `design.tree`. Empty unless proved.
         left: (k, 2, n) lower and upper bounds of the boxes that were not proved.
@@ -62,8 +65,10 @@ class Certificate:
     bounds: FviBounds
     characteristic_length: float
     version: str
+    edition: int
     status: str
     counterexample: Array | None
+    within_reach: bool
     boxes: int
     codes: Array
     left: Array
@@ -74,9 +79,8 @@ class Certificate:
         return Statement(robot, self.margin, self.at_least, self.bounds, self.characteristic_length)
 
     def __str__(self) -> str:
-        return (
-            f"{self.mechanism}: {self.margin} >= {rounded_down(self.at_least, 6)} {self.status} with {self.boxes} boxes"
-        )
+        claim = f"{self.mechanism}: {self.margin} >= {rounded_down(self.at_least, 6)} {self.status}"
+        return f"{claim} with {self.boxes} boxes" if self.within_reach else f"{claim}: out of reach"
 
 
 def certify(
@@ -116,19 +120,22 @@ def answer(statement: Statement, region: Region, most_boxes: int, progress: Prog
     """Look for a counterexample where the margin is lowest, then prove by boxes."""
     what = f"certify {statement.margin} >= {statement.at_least:g}"
     progress(f"{what}: looking for a counterexample")
-    counterexample = statement.refutation(region, suspects(statement, region, SEED))
-    if counterexample is not None:
-        no_boxes = np.empty(0, dtype=np.int8), 0, np.empty((0, 2, len(counterexample)))
+    refuter = Refuter(statement)
+    refutation = refuter.refutation(region, suspects(statement, region, SEED))
+    if refutation is not None:
         mirrors = mirrors_of(statement.robot, region, statement.margin)
-        return _certificate(statement, region, mirrors, Search(*no_boxes, counterexample))
+        no_boxes = np.empty(0, dtype=np.int8), 0, np.empty((0, 2, len(refutation.pose)))
+        return _certificate(statement, region, mirrors, Search(*no_boxes, refutation))
     lower = LowerBounds(statement, region)
-    return answer_by_boxes(lower, region, most_boxes, lambda done: progress(f"{what}: {done}"))
+    return answer_by_boxes(lower, refuter, region, most_boxes, lambda done: progress(f"{what}: {done}"))
 
 
-def answer_by_boxes(lower: LowerBounds, region: Region, most_boxes: int, progress: Progress) -> Certificate:
+def answer_by_boxes(
+    lower: LowerBounds, refuter: Refuter, region: Region, most_boxes: int, progress: Progress
+) -> Certificate:
     """Prove by boxes; the region may be a part of the one that the lower bounds were made for."""
     mirrors = mirrors_of(lower.statement.robot, region, lower.statement.margin)
-    return _certificate(lower.statement, region, mirrors, search(lower, region, mirrors, most_boxes, progress))
+    return _certificate(lower.statement, region, mirrors, search(lower, refuter, region, mirrors, most_boxes, progress))
 
 
 def suspects(statement: Statement, region: Region, about: int) -> Array:
@@ -141,7 +148,7 @@ def suspects(statement: Statement, region: Region, about: int) -> Array:
 
 
 def _certificate(statement: Statement, region: Region, mirrors: Mirrors, found: Search) -> Certificate:
-    refuted, proved = found.counterexample is not None, not len(found.left)
+    refutation, proved = found.refutation, not len(found.left)
     return Certificate(
         mechanism=type(statement.robot).__name__,
         digest=statement.robot.geometry.digest,
@@ -152,10 +159,12 @@ def _certificate(statement: Statement, region: Region, mirrors: Mirrors, found: 
         bounds=statement.bounds,
         characteristic_length=statement.length,
         version=version("linkwright"),
-        status="refuted" if refuted else "proved" if proved else "undecided",
-        counterexample=found.counterexample,
+        edition=EDITION,
+        status="refuted" if refutation else "proved" if proved else "undecided",
+        counterexample=refutation.pose if refutation else None,
+        within_reach=refutation is None or refutation.within_reach,
         boxes=found.boxes,
-        codes=found.codes if proved and not refuted else np.empty(0, dtype=np.int8),
+        codes=found.codes if proved and not refutation else np.empty(0, dtype=np.int8),
         left=found.left,
         mirrors=mirrors,
     )

@@ -27,7 +27,9 @@ _PLAIN: dict[str, type] = {
     "at_least": float,
     "characteristic_length": float,
     "version": str,
+    "edition": int,
     "status": str,
+    "within_reach": bool,
     "boxes": int,
 }
 # All that numpy, zipfile and json raise on bytes that they did not write.

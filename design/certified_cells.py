@@ -15,6 +15,7 @@ from design.errors import InvalidSection
 from design.index import index_of
 from design.lower_bounds import LowerBounds
 from design.maps import Map, map_of
+from design.refutation import Refuter
 from design.region import Box, Region
 from design.section import Section
 from design.statement import Statement
@@ -69,12 +70,12 @@ def certified_cells(
 
 def _proofs(lower: LowerBounds, chart: Map, size: int, most_boxes: int) -> tuple[list[Certificate], int, Array]:
     """The proved cells of a chart of `size` by `size`, the boxes bounded, and those left of smallest cells."""
-    holds = chart.goodness >= lower.statement.at_least  # NaN is not
+    holds, refuter = chart.goodness >= lower.statement.at_least, Refuter(lower.statement)  # NaN does not hold
     cells, proved, left, boxes = [(0, 0, size)], [], [np.empty((0, 2, chart.poses.shape[-1]))], 0
     while cells:
         column, row, size = cells.pop()
         if holds[row : row + size + 1, column : column + size + 1].all():
-            found = answer_by_boxes(lower, _cell(chart, column, row, size), most_boxes, lambda _: None)
+            found = answer_by_boxes(lower, refuter, _cell(chart, column, row, size), most_boxes, lambda _: None)
             boxes += found.boxes
             if found.status == "proved":
                 proved.append(found)

@@ -9,9 +9,10 @@ from importlib.metadata import version
 
 import numpy as np
 
-from design.certificate import Certificate
+from design.certificate import EDITION, Certificate
 from design.errors import BrokenCertificate, OtherCertificate
 from design.lower_bounds import LowerBounds
+from design.refutation import Refuter
 from design.region import Region
 from design.symmetry import mirrors_of, one_side
 from design.tree import LEFT, OUTSIDE, halves, leaves, outside, root
@@ -41,8 +42,8 @@ def replay(
         How many boxes were bounded again; 1 for the pose of a refutation.
 
     Raises:
-        OtherCertificate: another mechanism, geometry, ranges, version, region, margin, FVI bounds, length, or a lower
-            bound.
+        OtherCertificate: another mechanism, geometry, ranges, version, edition, region, margin, FVI bounds, length, or a
+            lower bound.
         BrokenCertificate: its boxes do not cover the region, are not as many as it says, or one is not proved; its pose
             does not refute; or it decides nothing.
     """
@@ -50,6 +51,7 @@ def replay(
     _same("geometry", certificate.digest, robot.geometry.digest)
     _same("joint ranges", certificate.ranges, robot.ranges.digest)
     _same("version", certificate.version, version("linkwright"))
+    _same("edition", certificate.edition, EDITION)
     if region is not None:
         _same("region", repr(certificate.region), repr(region))
     if margin is not None:
@@ -84,10 +86,10 @@ def _replay_proof(certificate: Certificate, robot: Mechanism) -> int:
         raise BrokenCertificate(f"it relies on the mirrors {mirrors}; shown to hold: {shown}")
     for code, low, high in leaves(certificate.codes, *one_side(*root(region, names), mirrors, names)):
         if (code == LEFT).any():
-            raise BrokenCertificate("a box is left open", low[code == LEFT][0])
+            raise BrokenCertificate("a box is left open", low[code == LEFT][0].tolist())
         off = code == OUTSIDE
         if not outside(region, low[off], high[off], names).all():
-            raise BrokenCertificate("a box that it calls outside is not", low[off][0])
+            raise BrokenCertificate("a box that it calls outside is not", low[off][0].tolist())
         low, high = low[~off], high[~off]
         for cuts in range(_CUTS + 1):
             lowest, spread = lower.lowest(low, high)
@@ -96,13 +98,19 @@ def _replay_proof(certificate: Certificate, robot: Mechanism) -> int:
             if not rest.any():
                 break
             if cuts == _CUTS:
-                raise BrokenCertificate("a box is not proved", low[rest][0])
+                raise BrokenCertificate("a box is not proved", low[rest][0].tolist())
             axis = lower.axis(low[rest], high[rest], spread[rest])
             low, high = halves(low[rest], high[rest], axis)
     return count
 
 
 def _replay_refutation(certificate: Certificate, robot: Mechanism, pose: Array) -> int:
-    if certificate.statement(robot).refutation(certificate.region, pose[None]) is None:
-        raise BrokenCertificate("its pose does not refute the claim", pose)
+    if pose.shape != (len(robot.pose_names),):
+        raise BrokenCertificate(f"its pose has {pose.size} numbers; expected {len(robot.pose_names)}")
+    certificate.region.check(robot.pose_names)
+    found = Refuter(certificate.statement(robot)).refutation(certificate.region, pose[None])
+    if found is None:
+        raise BrokenCertificate("its pose does not refute the claim", pose.tolist())
+    if found.within_reach != certificate.within_reach:
+        raise BrokenCertificate(f"its pose is {'within' if found.within_reach else 'out of'} reach; it says otherwise")
     return 1

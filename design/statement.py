@@ -6,12 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from design.region import Region
 from kinematics import FviBounds, Mechanism
 from kinematics.errors import InvalidValue
 
 Array = np.ndarray
-_ROUNDING = 1e-12  # by how much plain arithmetic must miss the bound before it refutes, relative to 1 or the bound
 
 
 @dataclass(frozen=True)
@@ -57,14 +55,6 @@ class Statement:
         return cls(robot, margin, float(at_least), bounds or robot.fvi_bounds, float(length))
 
     def value(self, poses: Array) -> Array:
-        """(..., n) -> (...,) the margin in plain arithmetic."""
-        return self.robot.margin(self.margin, poses, self.bounds, self.length)
-
-    def refutation(self, region: Region, poses: Array) -> Array | None:
-        """The worst (n,) of the poses (k, n) in the region that miss the bound or have no margin; None: none does."""
-        poses = poses[region.contains(poses, self.robot.pose_names)]
-        if not len(poses):
-            return None
-        values = self.value(poses)
-        below = ~(values >= self.at_least - _ROUNDING * max(1.0, abs(self.at_least)))
-        return poses[int(np.where(below, np.nan_to_num(values, nan=-np.inf), np.inf).argmin())] if below.any() else None
+        """(..., n) -> (...,) the margin in plain arithmetic; NaN wherever a limb cannot reach, of `reach` itself too."""
+        values = self.robot.margin(self.margin, poses, self.bounds, self.length)
+        return np.where(self.robot.margin("reach", poses) >= 0.0, values, np.nan)

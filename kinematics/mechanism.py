@@ -162,10 +162,10 @@ class Mechanism(Definition):
         def worst(model: Model) -> list[ca.SX]:
             if name == "fvi":
                 return [fvi(self._homogeneous(model, length), bounds)]
-            return [smallest(self.margin_components(name, bounds, length))]
+            value = smallest(self.margin_components(name, bounds, length))
+            return [value] if name == "reach" else [value, model.inverse]  # some margins hold a few limbs only
 
-        (value,) = self._evaluate((name, bounds, length), worst, pose)
-        return value[..., 0]
+        return self._evaluate((name, bounds, length), worst, pose)[0][..., 0]
 
     def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
         """A margin's components in the model's symbols `pose` and `geometry`, each to be at least the bound.
