@@ -25,8 +25,9 @@ from design.region import Region
 from design.search import worst_poses
 from design.statement import Statement
 from design.symmetry import Mirrors, mirrors_of
+from design.tree import MOST_NODES
 from kinematics import FviBounds, Mechanism
-from kinematics.errors import InvalidValue
+from kinematics.arguments import whole
 from kinematics.shown import rounded_down
 
 Array = np.ndarray
@@ -107,13 +108,11 @@ def certify(
 
     Raises:
         InvalidRegion: the region does not speak of the robot's coordinates.
-        InvalidValue: see `Statement`; or no box allowed.
+        InvalidValue: see `Statement`; or no box allowed, or more than a certificate can hold.
     """
     statement = Statement.of(robot, margin, at_least, bounds, characteristic_length)
     region.check(robot.pose_names)
-    if most_boxes < 1:
-        raise InvalidValue("most_boxes", most_boxes, "at least 1")
-    return answer(statement, region, most_boxes, progress)
+    return answer(statement, region, whole("most_boxes", most_boxes, 1, MOST_NODES // 2), progress)
 
 
 def answer(statement: Statement, region: Region, most_boxes: int, progress: Progress) -> Certificate:

@@ -20,9 +20,9 @@ is rewritten. The lemmas:
   ends p of one and q of the other, as then all of their points are so far apart along w. The shortest line between the
   segments in the middle of the box serves as w.
 
-That the scales are positive is claimed with the rest, and that every limb reaches (`reaching`), whatever the margin; the
-FVI's own numbers and the length must be positive. S is an input of its own: any numbers are right, good ones only make
-the bounds tight. So are the w.
+That the scales are positive is claimed with the rest, and that every limb reaches (`reaching`), whatever the margin.
+The FVI's own numbers and the length must be positive. S is an input of its own: any numbers are right, good ones only
+make the bounds tight. So are the w.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ def claims_of(statement: Statement, numbers: Numbers, inside: Array) -> Claims:
 
 
 def defining_rows(statement: Statement, numbers: Numbers) -> ca.SX:
-    """(k,) expressions that are all at least 0 if and only if the margin, where it has a value, is at least the bound."""
+    """(k,) expressions, all at least 0 if and only if the margin, where it has a value, reaches the bound."""
     robot = statement.robot
     if statement.margin == "passive_joint":
         return robot.passive_rows(lambda joint, limits: joint.within(limits, numbers.bound))

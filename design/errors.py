@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from kinematics.errors import LinkwrightError
+from kinematics.errors import LinkwrightError, plain
 
 
 class InvalidRegion(LinkwrightError):
@@ -12,7 +12,7 @@ class InvalidRegion(LinkwrightError):
 
     def __init__(self, key: str, found: object, expected: str) -> None:
         self.key, self.found, self.expected = key, found, expected
-        super().__init__(f"region, {key}: found {found}; expected {expected}")
+        super().__init__(f"region, {key}: found {plain(found)}; expected {expected}")
 
 
 class InvalidSection(LinkwrightError):
@@ -20,7 +20,7 @@ class InvalidSection(LinkwrightError):
 
     def __init__(self, key: str, found: object, expected: str) -> None:
         self.key, self.found, self.expected = key, found, expected
-        super().__init__(f"section, {key}: found {found}; expected {expected}")
+        super().__init__(f"section, {key}: found {plain(found)}; expected {expected}")
 
 
 class NotConverged(LinkwrightError):
@@ -50,7 +50,7 @@ class OtherCertificate(LinkwrightError):
 
     def __init__(self, what: str, found: object, expected: object) -> None:
         self.what, self.found, self.expected = what, found, expected
-        super().__init__(f"certificate, {what}: made for {found}; expected {expected}")
+        super().__init__(f"certificate, {what}: made for {plain(found)}; expected {plain(expected)}")
 
 
 class BrokenCertificate(LinkwrightError):
@@ -60,7 +60,7 @@ class BrokenCertificate(LinkwrightError):
 
     def __init__(self, reason: str, box: object = None) -> None:
         self.reason, self.box = reason, box
-        super().__init__(f"certificate: {reason}{f', box {box}' if box is not None else ''}")
+        super().__init__(f"certificate: {reason}{f', box {plain(box)}' if box is not None else ''}")
 
 
 class UnreadableCertificate(BrokenCertificate):

@@ -2,7 +2,7 @@
 
 A limb whose inverse model has no value cannot reach. A claim whose expressions hold all that this limb's inverse model
 needs in order to have a value (the same root of the same number) is never shown where it has none. Which limbs that
-leaves is read off the expressions, so no mechanism and no margin can forget one; their reach is claimed in so many rows.
+leaves is read off the expressions, so no mechanism and no margin can forget one; their reach is claimed beside it.
 """
 
 from __future__ import annotations

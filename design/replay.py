@@ -42,8 +42,8 @@ def replay(
         How many boxes were bounded again; 1 for the pose of a refutation.
 
     Raises:
-        OtherCertificate: another mechanism, geometry, ranges, version, edition, region, margin, FVI bounds, length, or a
-            lower bound.
+        OtherCertificate: another mechanism, geometry, ranges, version, edition, region, margin, FVI bounds or length,
+            or a lower bound.
         BrokenCertificate: its boxes do not cover the region, are not as many as it says, or one is not proved; its pose
             does not refute; or it decides nothing.
     """
@@ -86,10 +86,10 @@ def _replay_proof(certificate: Certificate, robot: Mechanism) -> int:
         raise BrokenCertificate(f"it relies on the mirrors {mirrors}; shown to hold: {shown}")
     for code, low, high in leaves(certificate.codes, *one_side(*root(region, names), mirrors, names)):
         if (code == LEFT).any():
-            raise BrokenCertificate("a box is left open", low[code == LEFT][0].tolist())
+            raise BrokenCertificate("a box is left open", low[code == LEFT][0])
         off = code == OUTSIDE
         if not outside(region, low[off], high[off], names).all():
-            raise BrokenCertificate("a box that it calls outside is not", low[off][0].tolist())
+            raise BrokenCertificate("a box that it calls outside is not", low[off][0])
         low, high = low[~off], high[~off]
         for cuts in range(_CUTS + 1):
             lowest, spread = lower.lowest(low, high)
@@ -98,7 +98,7 @@ def _replay_proof(certificate: Certificate, robot: Mechanism) -> int:
             if not rest.any():
                 break
             if cuts == _CUTS:
-                raise BrokenCertificate("a box is not proved", low[rest][0].tolist())
+                raise BrokenCertificate("a box is not proved", low[rest][0])
             axis = lower.axis(low[rest], high[rest], spread[rest])
             low, high = halves(low[rest], high[rest], axis)
     return count
@@ -110,7 +110,7 @@ def _replay_refutation(certificate: Certificate, robot: Mechanism, pose: Array) 
     certificate.region.check(robot.pose_names)
     found = Refuter(certificate.statement(robot)).refutation(certificate.region, pose[None])
     if found is None:
-        raise BrokenCertificate("its pose does not refute the claim", pose.tolist())
+        raise BrokenCertificate("its pose does not refute the claim", pose)
     if found.within_reach != certificate.within_reach:
         raise BrokenCertificate(f"its pose is {'within' if found.within_reach else 'out of'} reach; it says otherwise")
     return 1

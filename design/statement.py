@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinematics import FviBounds, Mechanism
+from kinematics.arguments import finite, positive
 from kinematics.errors import InvalidValue
 
 Array = np.ndarray
@@ -36,10 +37,8 @@ class Statement:
         if self.margin not in self.robot.margins:
             known = ", ".join(self.robot.margins)
             raise InvalidValue(f"{type(self.robot).__name__} margin", self.margin, f"one of {known}")
-        if not np.isfinite(self.at_least):
-            raise InvalidValue(f"at_least of {self.margin}", self.at_least, "a finite number, in the margin's unit")
-        if not (np.isfinite(self.length) and self.length > 0.0):
-            raise InvalidValue("characteristic_length", self.length, "a finite length > 0 m")
+        finite(f"at_least of {self.margin}", self.at_least, "a finite number, in the margin's unit")
+        positive("characteristic_length", self.length, "a finite length > 0 m")
 
     @classmethod
     def of(
@@ -52,9 +51,9 @@ class Statement:
     ) -> Statement:
         """With the robot's own FVI bounds and length where none are given."""
         length = robot.characteristic_length if characteristic_length is None else characteristic_length
-        return cls(robot, margin, float(at_least), bounds or robot.fvi_bounds, float(length))
+        return cls(robot, margin, at_least, bounds or robot.fvi_bounds, length)
 
     def value(self, poses: Array) -> Array:
-        """(..., n) -> (...,) the margin in plain arithmetic; NaN wherever a limb cannot reach, of `reach` itself too."""
+        """(..., n) -> (...,) the margin in plain arithmetic; NaN where a limb cannot reach, of `reach` itself too."""
         values = self.robot.margin(self.margin, poses, self.bounds, self.length)
         return np.where(self.robot.margin("reach", poses) >= 0.0, values, np.nan)
