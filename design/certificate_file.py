@@ -121,6 +121,8 @@ def _certificate(path: Path) -> Certificate:
     if not (np.isfinite(pose).all() and np.isfinite(left).all() and left.shape[1] == 2):
         raise ValueError("a counterexample or a box left that is not of finite numbers")
     plain = {key: _of_kind(key, header[key], kind) for key, kind in _PLAIN.items()}
+    if plain["boxes"] < 0:
+        raise ValueError(f"{plain['boxes']} boxes")
     if (plain["status"] == "refuted") != bool(pose.size) or (plain["status"] == "proved") != bool(codes.size):
         raise ValueError(
             f"{pose.size} numbers of a counterexample and {codes.size} boxes for the status {plain['status']!r}"

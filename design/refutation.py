@@ -52,7 +52,6 @@ class Refuter:
         order = np.argsort(np.nan_to_num(values[failing], nan=-np.inf), kind="stable")
         poses = poses[failing[order[:_MOST]]]
         _, highest = enclose(self._rows, poses, poses)
-        beyond = (highest[:, : self._limbs] < 0.0).any(axis=1)
-        below = (highest[:, self._limbs :] < 0.0).any(axis=1)
-        shown = np.flatnonzero(beyond | below)
+        beyond = highest[:, : self._limbs].min(axis=1) < 0.0
+        shown = np.flatnonzero(highest.min(axis=1) < 0.0)
         return Refutation(poses[shown[0]], not bool(beyond[shown[0]])) if len(shown) else None

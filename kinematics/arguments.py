@@ -15,7 +15,7 @@ def finite(what: str, value: object, expected: str = "a finite number") -> float
         InvalidValue: text, a truth value, NaN or infinite.
     """
     if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
-        raise InvalidValue(what, value if not isinstance(value, str) else repr(value), expected)
+        raise InvalidValue(what, repr(value) if isinstance(value, str) else value, expected)
     return float(value)
 
 
@@ -38,6 +38,7 @@ def whole(what: str, value: object, low: int, high: int | None = None) -> int:
         InvalidValue: not a whole number between the two, both included.
     """
     expected = f"a whole number, {low} or more" if high is None else f"a whole number from {low} to {high}"
-    if isinstance(value, bool) or not isinstance(value, Integral) or not low <= value or (high and value > high):
-        raise InvalidValue(what, value if not isinstance(value, str) else repr(value), expected)
-    return int(value)
+    number = int(value) if isinstance(value, Integral) and not isinstance(value, bool) else None
+    if number is None or number < low or (high is not None and number > high):
+        raise InvalidValue(what, repr(value) if isinstance(value, str) else value, expected)
+    return number
