@@ -237,6 +237,8 @@ def _damaged(rng: np.random.Generator, whole: bytes) -> bytes:
     """Bytes changed, cut out, doubled or cut off."""
     content = bytearray(whole)
     for _ in range(int(rng.integers(1, 5))):
+        if not content:
+            break
         first = int(rng.integers(len(content)))
         last = min(len(content), first + int(rng.integers(1, 40)))
         match int(rng.integers(4)):
