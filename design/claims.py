@@ -148,7 +148,7 @@ def _clearance(robot: Mechanism, numbers: Numbers) -> Claims:
 def _directions(gaps: Array) -> Array:
     """(k, 3, c) each column over its length; e_x where it has none."""
     size = np.linalg.norm(gaps, axis=1, keepdims=True)
-    usable = np.isfinite(size) & (size > 1e-12)
+    usable = np.isfinite(size) & (size > 1e-150)  # far above where squares underflow
     return np.where(usable, gaps / np.where(usable, size, 1.0), np.array([1.0, 0.0, 0.0])[:, None])
 
 

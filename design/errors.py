@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from kinematics.errors import LinkwrightError, plain
+
+if TYPE_CHECKING:
+    from design.synthesis import Candidate
 
 
 class InvalidRegion(LinkwrightError):
@@ -34,13 +38,14 @@ class NotConverged(LinkwrightError):
 
 
 class SynthesisFailed(LinkwrightError):
-    """The optimisation has no answer to stand by."""
+    """The optimisation has no answer to stand by; `best` is the best geometry that was seen all the same, or None."""
 
     exit_status = 1
 
-    def __init__(self, reason: str, status: str) -> None:
-        self.reason, self.status = reason, status
-        super().__init__(f"no optimum: {reason} (solver status: {status})")
+    def __init__(self, reason: str, status: str, best: Candidate | None = None) -> None:
+        self.reason, self.status, self.best = reason, status, best
+        seen = f"; best found: {best}" if best is not None else ""
+        super().__init__(f"no optimum: {reason} (solver status: {status}){seen}")
 
 
 class OtherCertificate(LinkwrightError):

@@ -104,7 +104,7 @@ class Outcome:
         """What holds the optimum back; empty where nothing was optimised."""
         if self.study.optimise is None:
             return []
-        return active_sets(self.problem, self.robot, {margin: worst.value for margin, worst in self.worst.items()})
+        return active_sets(self.problem, self.robot, self.worst)
 
     def cycle_figures(self) -> dict[str, Any]:
         """What the cycle claims, as plain data; empty without one."""

@@ -72,7 +72,7 @@ def test_what_holds_the_optimum_back_is_named() -> None:
     found = synthesise(asked, REGION, starts=1, about=ABOUT)
     at_bound = abs(found.robot.geometry.platform_radius - 0.08) < 1e-6
     at_requirement = found.after["internal_determinant"].value < 0.401
-    active = active_sets(asked, found.robot, {margin: worst.value for margin, worst in found.after.items()})
+    active = active_sets(asked, found.robot, found.after)
     assert ("platform_radius at its upper bound 0.08" in active) == at_bound
     assert ("internal_determinant at its lower bound 0.4" in active) == at_requirement
     assert active
