@@ -1,4 +1,4 @@
-"""Cut a region into boxes until each is proved, one fails, or the allowance is used up.
+"""Cut a region into boxes until each is proved, one fails, or the allowance of boxes or of time is used up.
 
 Boxes are taken depth first in batches, so memory stays bounded by a few batches a level.
 """
@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from design.budget import Budget
 from design.lower_bounds import LowerBounds
 from design.refutation import Refutation, Refuter
 from design.region import Region
@@ -44,6 +45,7 @@ def search(
     region: Region,
     mirrors: Mirrors,
     most_boxes: int,
+    budget: Budget,
     progress: Callable[[str], None],
 ) -> Search:
     """Bound boxes, cut those that stay open along the coordinate that spreads their claims the most.
@@ -52,6 +54,7 @@ def search(
         bounds: of the statement, over a region that holds this one.
         refuter: of the same statement.
         mirrors: those that allow to look at one side only.
+        most_boxes, budget: what ends it undecided, with the boxes that are left.
         progress: told how far it is after each batch.
     """
     names = bounds.statement.robot.pose_names
@@ -61,7 +64,7 @@ def search(
     stack = [(np.zeros(1, dtype=np.int64), low, high)]
     small: list[Array] = []
     boxes, refutation = 0, None
-    while stack and boxes < most_boxes and len(small) < _MOST_SMALL and refutation is None:
+    while stack and boxes < most_boxes and len(small) < _MOST_SMALL and refutation is None and not budget.spent:
         nodes, low, high = _take(stack, min(BATCH, most_boxes - boxes))
         off = outside(region, low, high, names)
         tree.leaves(nodes[off], OUTSIDE)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterable, Iterator
+from numbers import Real
 from typing import TypeVar
 
 from kinematics.errors import InvalidValue
@@ -20,7 +21,7 @@ class Budget:
     """
 
     def __init__(self, seconds: float) -> None:
-        usable = isinstance(seconds, int | float) and not isinstance(seconds, bool) and seconds > 0.0  # NaN is not
+        usable = isinstance(seconds, Real) and not isinstance(seconds, bool) and seconds > 0.0  # NaN is not
         if not usable:
             raise InvalidValue("seconds", repr(seconds) if isinstance(seconds, str) else seconds, "a number > 0")
         self.seconds = float(seconds)

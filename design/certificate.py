@@ -12,13 +12,16 @@ counterexamples.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.metadata import version
+from typing import Any
 
 import numpy as np
 
 from design.branch_and_bound import Search, search
+from design.budget import Budget
 from design.lower_bounds import LowerBounds
 from design.refutation import Refuter
 from design.region import Region
@@ -93,6 +96,7 @@ def certify(
     bounds: FviBounds | None = None,
     characteristic_length: float | None = None,
     most_boxes: int = MOST_BOXES,
+    seconds: float = math.inf,
     progress: Progress = lambda _: None,
 ) -> Certificate:
     """Prove or refute that a margin is at least a bound everywhere in a region.
@@ -103,7 +107,7 @@ def certify(
         margin: one of `robot.margins`.
         at_least: the bound, in the margin's unit.
         bounds, characteristic_length: as in `Mechanism.margin`.
-        most_boxes: after so many the answer is "undecided".
+        most_boxes, seconds: after so many boxes, or so much time, the answer is "undecided", with the boxes left.
         progress: told a line of text at each step.
 
     Raises:
@@ -112,38 +116,49 @@ def certify(
     """
     statement = Statement.of(robot, margin, at_least, bounds, characteristic_length)
     region.check(robot.pose_names)
-    return answer(statement, region, whole("most_boxes", most_boxes, 1, MOST_NODES // 2), progress)
+    return answer(statement, region, checked_boxes(most_boxes), Budget(seconds), progress)
 
 
-def answer(statement: Statement, region: Region, most_boxes: int, progress: Progress) -> Certificate:
+def checked_boxes(most_boxes: object) -> int:
+    """How many boxes are allowed, no more than a certificate can hold.
+
+    Raises:
+        InvalidValue: not such a number.
+    """
+    return whole("most_boxes", most_boxes, 1, MOST_NODES // 2)
+
+
+def answer(statement: Statement, region: Region, most_boxes: int, budget: Budget, progress: Progress) -> Certificate:
     """Look for a counterexample where the margin is lowest, then prove by boxes."""
     what = f"certify {statement.margin} >= {statement.at_least:g}"
     progress(f"{what}: looking for a counterexample")
     refuter = Refuter(statement)
-    refutation = refuter.refutation(region, suspects(statement, region, SEED))
+    refutation = refuter.refutation(region, suspects(statement, region, SEED, budget.share(4)))
     if refutation is not None:
         mirrors = mirrors_of(statement.robot, region, statement.margin)
         no_boxes = np.empty(0, dtype=np.int8), 0, np.empty((0, 2, len(refutation.pose)))
         return _certificate(statement, region, mirrors, Search(*no_boxes, refutation))
     lower = LowerBounds(statement, region)
-    return answer_by_boxes(lower, refuter, region, most_boxes, lambda done: progress(f"{what}: {done}"))
+    return answer_by_boxes(lower, refuter, region, most_boxes, budget, lambda done: progress(f"{what}: {done}"))
 
 
 def answer_by_boxes(
-    lower: LowerBounds, refuter: Refuter, region: Region, most_boxes: int, progress: Progress
+    lower: LowerBounds, refuter: Refuter, region: Region, most_boxes: int, budget: Budget, progress: Progress
 ) -> Certificate:
     """Prove by boxes; the region may be a part of the one that the lower bounds were made for."""
     mirrors = mirrors_of(lower.statement.robot, region, lower.statement.margin)
-    return _certificate(lower.statement, region, mirrors, search(lower, refuter, region, mirrors, most_boxes, progress))
+    found = search(lower, refuter, region, mirrors, most_boxes, budget, progress)
+    return _certificate(lower.statement, region, mirrors, found)
 
 
-def suspects(statement: Statement, region: Region, about: int) -> Array:
+def suspects(statement: Statement, region: Region, about: int, budget: Budget) -> Array:
     """(k, n) poses where the margin is lowest as far as a grid and descents tell, the lowest first."""
-    robot, bounds, length = statement.robot, statement.bounds, statement.length
+    measured = {"bounds": statement.bounds, "characteristic_length": statement.length}
     if region.dimension == 0:
-        return region.from_unit(np.empty((1, 0)), robot.pose_names)
+        return region.from_unit(np.empty((1, 0)), statement.robot.pose_names)
     about = min(about, _MOST_PER_COORDINATE**region.dimension)
-    return worst_poses(robot, region, statement.margin, bounds=bounds, characteristic_length=length, about=about).poses
+    asked: dict[str, Any] = measured | {"about": about, "seconds": budget.seconds}
+    return worst_poses(statement.robot, region, statement.margin, **asked).poses
 
 
 def _certificate(statement: Statement, region: Region, mirrors: Mirrors, found: Search) -> Certificate:

@@ -27,14 +27,14 @@ class InvalidSection(LinkwrightError):
         super().__init__(f"section, {key}: found {plain(found)}; expected {expected}")
 
 
-class NotConverged(LinkwrightError):
-    """A figure that still moves by more than was asked on the finest grid."""
+class OutOfTime(LinkwrightError):
+    """A search that could not come to a first answer within its time."""
 
     exit_status = 1
 
-    def __init__(self, what: str, moved: float, tolerance: float, hint: str) -> None:
-        self.what, self.moved, self.tolerance = what, moved, tolerance
-        super().__init__(f"{what}: still moves by {moved:.3g} on the finest grid; expected {tolerance:.3g}; {hint}")
+    def __init__(self, what: str, seconds: float, reached: str) -> None:
+        self.what, self.seconds, self.reached = what, seconds, reached
+        super().__init__(f"{what}: {seconds:g} s were used up at {reached}; expected more time, or a coarser question")
 
 
 class SynthesisFailed(LinkwrightError):
