@@ -50,6 +50,10 @@ CertifiedOption = Annotated[
 ToleranceOption = Annotated[
     float, typer.Option("--tolerance", help="By what part the figures may still move when the grid is refined.")
 ]
+SecondsOption = Annotated[
+    float,
+    typer.Option("--seconds", help="Time for the map, and as much for the proof; then both say what they reached."),
+]
 
 
 def map_(
@@ -61,11 +65,14 @@ def map_(
     at_least: AtLeastOption = None,
     certified: CertifiedOption = False,
     tolerance: ToleranceOption = 1e-3,
+    seconds: SecondsOption = 600.0,
     out: OutOption = None,
     json: JsonOption = False,
     prototype: PrototypeOption = False,
 ) -> None:
     """Map an index over a plane of the workspace: area, mean, deviation, boundary, picture and numbers.
+
+    Exits 1 where the figures still move by more than the tolerance.
 
     linkwright map heli4 --certified
 
@@ -82,5 +89,7 @@ def map_(
     folder = out or Path("out") / asked.name
     require_writable_folders(folder)
     with console.progress() as tell:
-        outcome = run_map(request, tolerance, certified, tell)
+        outcome = run_map(request, tolerance, certified, tell, seconds)
     print_map(outcome, write_map(outcome, folder), json)
+    if not outcome.found.settled:
+        raise typer.Exit(1)

@@ -14,10 +14,10 @@ from kinematics import FviBounds, Mechanism
 from kinematics.errors import LinkwrightError
 from studies import setup
 from studies.schema import Study
+from studies.units import in_si
 
 DEFAULT = "fvi"
 _FVI_BOUND = 1.0  # what the index's own lower bounds mean by good enough
-_FACTORS = {"mm": 1e-3, "deg": math.pi / 180.0}
 
 
 class InvalidOption(LinkwrightError):
@@ -138,7 +138,7 @@ def _assignments(
             raise InvalidOption(option, text, f"numbers with '{separator}' between them") from None
         if not all(math.isfinite(v) for v in values):
             raise InvalidOption(option, text, "finite numbers")
-        found[name] = tuple(v * _FACTORS.get(suffix, 1.0) for v in values)
+        found[name] = tuple(float(in_si(v, suffix)) for v in values)
     return found
 
 

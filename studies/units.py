@@ -126,7 +126,7 @@ class Conversion:
 
     def _value(self, value: Any, node: Key | Table, suffix: str, path: KeyPath) -> Any:
         if isinstance(node, Key):
-            return _in_si(value, suffix)
+            return in_si(value, suffix)
         if isinstance(value, list):
             return tuple(self._value(row, node, "", (*path, i)) for i, row in enumerate(value))
         return self.to_si(value, node, path) if isinstance(value, dict) else value
@@ -184,9 +184,10 @@ def _all_spellings(table: Table) -> list[str]:
     return [*table.keys, *suffixed]
 
 
-def _in_si(value: Any, suffix: str) -> Any:
+def in_si(value: Any, suffix: str) -> Any:
+    """A number, or numbers in lists, of a key that ends in a suffix; anything else as it is."""
     if isinstance(value, list):
-        return tuple(_in_si(entry, suffix) for entry in value)
+        return tuple(in_si(entry, suffix) for entry in value)
     if isinstance(value, bool) or not isinstance(value, int | float):
         return value
     try:
