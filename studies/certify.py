@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from design import Certificate, Region, best_bound, certify, replay, worst_poses
+from design.budget import Budget
 from design.nlp import Problem
 from design.search import WorstPoses
 from kinematics import Mechanism
@@ -16,10 +17,7 @@ from kinematics.errors import InvalidValue, LinkwrightError
 from kinematics.shown import rounded_down
 from studies import setup
 from studies.schema import Study
-from studies.stages import Progress, budget_of
-
-_LEAST = 1e-3  # s: a claim has this even where the budget is used up
-
+from studies.stages import Progress
 
 @dataclass(frozen=True)
 class Claim:
@@ -144,17 +142,17 @@ class Question:
 
         The best bound has half of the time where it may have to be followed by the required one.
         """
-        asked, ends = self.study.certify, time.perf_counter() + seconds
+        asked, budget = self.study.certify, Budget(seconds)
         search: dict[str, Any] = self.measure | {"most_boxes": asked.most_boxes, "progress": progress}
         required, tolerance = claim.at_least, asked.tolerance * abs(worst)
         near = required is not None and worst - required <= tolerance
         if claim.best and not near and 0.0 < tolerance < math.inf:
-            search |= budget_of(best_bound, seconds if required is None else seconds / 2)
-            best = best_bound(self.robot, self.region, claim.margin, tolerance, **search)
+            share = budget.share(1 if required is None else 2).seconds
+            best = best_bound(self.robot, self.region, claim.margin, tolerance, seconds=share, **search)
             if best is not None and (required is None or best.certificate.at_least >= required):
                 return best.certificate
-        search |= budget_of(certify, max(_LEAST, ends - time.perf_counter()))
-        return certify(self.robot, self.region, claim.margin, at_least=required or 0.0, **search)
+        left = budget.share(1).seconds
+        return certify(self.robot, self.region, claim.margin, at_least=required or 0.0, seconds=left, **search)
 
 
 def claims_of(study: Study, problem: Problem) -> tuple[Claim, ...]:
@@ -193,9 +191,9 @@ def prove_claims(
     progress: Progress,
 ) -> tuple[Proof, ...]:
     """As `prove_all`, of these claims."""
-    ends = time.perf_counter() + question.study.budget.prove
+    budget = Budget(question.study.budget.prove)
     proofs = []
     for k, claim in enumerate(claims):
-        seconds = max(_LEAST, ends - time.perf_counter()) / (len(claims) - k)
+        seconds = budget.share(len(claims) - k).seconds
         proofs.append(question.prove(claim, worst.get(claim.margin), known.get(claim.margin), progress, seconds))
     return tuple(proofs)

@@ -69,6 +69,8 @@ def map_(
 ) -> None:
     """Map an index over a plane of the workspace: area, mean, deviation, boundary, picture and numbers.
 
+    Exits 1 where the figures still move by more than the tolerance.
+
     linkwright map heli4 --certified
 
     linkwright map redundant_3t1r --over y=-0.3187:0.3187 --over z=-0.8:0.8 --at theta_deg=0
@@ -85,3 +87,5 @@ def map_(
     with console.progress() as tell:
         outcome = run_map(request, tolerance, certified, tell, asked.budget.map)
     print_map(outcome, write_map(outcome, asked, folder), json)
+    if not outcome.found.settled:
+        raise typer.Exit(1)

@@ -32,6 +32,8 @@ def print_map(outcome: MapOutcome, written: Written, as_json: bool) -> None:
     ]
     if figures["area"] == 0.0:
         rows.insert(0, ("seen", outcome.none_seen, "", ""))
+    if outcome.still_moves:
+        rows.insert(0, ("not settled", outcome.still_moves, "", ""))
     rest = request.section.rest(request.robot.pose_names)
     title = f"{bound_label(outcome)}; {request.section}" + (f"; worst over {', '.join(rest)}" if rest else "")
     print_table(title, ("figure", "value", "moved last by", "at pose"), rows)
@@ -46,6 +48,7 @@ def print_map(outcome: MapOutcome, written: Written, as_json: bool) -> None:
             ("certificates", str(len(proof.certificates))),
             ("boxes", str(proof.boxes)),
             ("boxes left undecided", str(len(proof.left))),
+            *([] if proof.complete else [("not complete", "the time was used up")]),
             ("time [s]", f"{proof.seconds:.1f}"),
         ]
         print_table(f"Proved: {proof.margin} >= {proof.at_least:g}", ("figure", "value"), proved)

@@ -21,7 +21,7 @@ from studies.certify import Proof, Question, prove_all
 from studies.errors import ApproachFailed, Failed, RequirementFailed
 from studies.inside import leaving
 from studies.schema import Study
-from studies.stages import Lasting, Progress, budget_of, stage
+from studies.stages import Lasting, Progress, stage
 from trajectory import Cycle, Limits, Move, Path, Setpoints, cycle_setpoints, lower_bound, there_and_back
 from trajectory.path_certificate import Way
 
@@ -119,7 +119,7 @@ class Outcome:
         """What holds the optimum back; empty where nothing was optimised."""
         if self.study.optimise is None:
             return []
-        return active_sets(self.problem, self.robot, {margin: worst.value for margin, worst in self.worst.items()})
+        return active_sets(self.problem, self.robot, self.worst)
 
     def cycle_figures(self) -> dict[str, Any]:
         """What the cycle claims, as plain data; empty without one."""
@@ -158,7 +158,7 @@ def optimise(study: Study, progress: Progress) -> Synthesis:
         starts=study.optimise.starts if study.optimise else 1,
         about=study.dense_sample,
         progress=progress,
-        **budget_of(synthesise, study.budget.optimise),
+        seconds=study.budget.optimise if study.optimise else math.inf,
     )
 
 

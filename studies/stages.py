@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import inspect
+import math
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
 
 Progress = Callable[[str], None]
 LONG = 2.0  # s: a stage that takes longer is told in a pipe, too
@@ -20,9 +19,9 @@ class Lasting(str):
 
 
 @contextmanager
-def stage(name: str, progress: Progress, seconds: float | None = None) -> Iterator[None]:
+def stage(name: str, progress: Progress, seconds: float = math.inf) -> Iterator[None]:
     """Tell that a stage runs and, where it was long, when it ends; with its budget in seconds where it has one."""
-    start = f"{name}: at most {seconds:g} s" if seconds is not None else f"{name} runs"
+    start = f"{name}: at most {seconds:g} s" if seconds < math.inf else f"{name} runs"
     progress(start)
     waiting = threading.Timer(LONG, progress, [Lasting(start)])
     waiting.daemon = True
@@ -33,9 +32,6 @@ def stage(name: str, progress: Progress, seconds: float | None = None) -> Iterat
     finally:
         waiting.cancel()
         if (took := time.perf_counter() - started) > LONG:
-            budget = f" of {seconds:g} s" if seconds is not None else ""
+            budget = f" of {seconds:g} s" if seconds < math.inf else ""
             progress(Lasting(f"{name} took {took:.1f} s{budget}"))
 
-
-def budget_of(function: Callable[..., Any], seconds: float | None) -> dict[str, Any]:
-    return {"seconds": seconds} if "seconds" in inspect.signature(function).parameters else {}

@@ -52,7 +52,8 @@ def proof_rows(proofs: Sequence[Proof]) -> list[tuple[str, ...]]:
 def _where(proof: Proof) -> str:
     certificate = proof.certificate
     if certificate.counterexample is not None:
-        return shown_pose(certificate.counterexample)
+        pose = shown_pose(certificate.counterexample)
+        return pose if certificate.within_reach else f"out of reach: {pose}"
     if len(certificate.left):
         return f"{len(certificate.left)} boxes left, one around {shown_pose(certificate.left[0].mean(axis=0))}"
     return ""

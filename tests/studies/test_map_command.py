@@ -79,6 +79,22 @@ def test_defaults_come_from_the_study() -> None:
     assert heli(section="z, theta").section.axes == ("z", "theta")
 
 
+def test_a_length_in_millimetres_is_the_very_number_in_metres() -> None:
+    for mm, m in (("41.3", 0.0413), ("24.9", 0.0249), ("305.7", 0.3057)):
+        assert redundant(at=(f"z_mm={mm}",), section="y,theta", over=("z=0:1",)).section.at["z"] == (m,)
+        assert redundant(over=(f"z_mm=0:{mm}",)).section.region.intervals["z"] == (0.0, m)
+
+
+def test_figures_that_still_move_are_printed_with_how_far(tmp_path: Path) -> None:
+    corner = ("--over", "y_mm=200:300", "--over", "z=0.3:0.6", "--at", "theta_deg=0")
+    done = linkwright("map", "redundant_3t1r", *corner, "--tolerance", 1e-12, "--seconds", 4, "--out", tmp_path)
+    assert done.returncode == 1, done.stderr
+    assert "not settled" in done.stdout
+    assert "still move by" in " ".join(done.stdout.split())
+    assert "area" in done.stdout
+    assert len(list(tmp_path.iterdir())) == 3
+
+
 def test_other_bounds_and_units() -> None:
     region = redundant(over=("theta_deg=-45:45", "z_mm=0:500")).section.region
     assert isinstance(region, Box)
