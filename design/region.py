@@ -18,7 +18,8 @@ from design.errors import InvalidRegion
 
 Array = np.ndarray
 Interval = float | tuple[float, float]
-_ROUNDING = 1e-12  # m or rad
+_ROUNDING = 1e-12  # relative to the largest number between the bounds
+_FEW = 4  # coordinates up to which three values of each are few poses
 CHUNK = 1 << 15  # poses: enough for all threads, and a chunk stays in the second cache
 
 
@@ -69,9 +70,13 @@ class Region(ABC):
     def outline(self) -> list[Array]:
         """Edges of the region's x, y, z part as polylines (k, 3), for drawing."""
 
+    @abstractmethod
     def contains(self, poses: Array, names: Sequence[str], slack: float = _ROUNDING) -> Array:
-        """(..., n) -> (...,) whether each pose is inside, or outside by no more than the slack [m or rad]."""
-        return self.room(poses, names) >= -slack
+        """(..., n) -> (...,) whether each pose is inside.
+
+        Args:
+            slack: a coordinate may be beyond a bound by this part of the larger of both bounds, without their signs.
+        """
 
     def check(self, names: Sequence[str]) -> None:
         """Check that the region speaks of exactly these coordinates.
@@ -124,7 +129,12 @@ class Region(ABC):
 
     def spread(self, names: Sequence[str]) -> Array:
         """(k, n) few distinct poses that reach every side of the region, corners and middle included."""
-        return np.unique(self.grid(names, (3,) * self.dimension), axis=0)
+        if self.dimension <= _FEW:
+            return np.unique(self.grid(names, (3,) * self.dimension), axis=0)
+        k = self.dimension  # corners, and the middle of each side and of the whole
+        sides = np.concatenate([np.full((1, k), 0.5), 0.5 + 0.5 * np.eye(k), 0.5 - 0.5 * np.eye(k)])
+        unit = np.concatenate([np.array(list(product((0.0, 1.0), repeat=k))), sides])
+        return np.unique(self.from_unit(unit, names), axis=0)
 
     def extent(self, names: Sequence[str]) -> Array:
         """(n,) widths of the coordinates' intervals."""
@@ -175,6 +185,12 @@ class Box(Region):
         """To the nearest bound of a coordinate."""
         low, high = np.array([self._intervals[name] for name in names]).T
         return np.minimum(poses - low, high - poses).min(axis=-1)
+
+    def contains(self, poses: Array, names: Sequence[str], slack: float = _ROUNDING) -> Array:
+        """Between all bounds."""
+        low, high = np.array([self._intervals[name] for name in names]).reshape(-1, 2).T
+        beyond = slack * np.maximum(np.abs(low), np.abs(high))
+        return ((poses >= low - beyond) & (poses <= high + beyond)).all(axis=-1)
 
     def narrowed(self, given: Mapping[str, Array]) -> dict[str, tuple[Array | float, Array | float]]:
         """The others' own bounds."""
@@ -243,6 +259,13 @@ class Cylinder(Region):
         others = [name for name in names if name not in ("x", "y")]
         rest = self._rest.room(poses[..., [names.index(name) for name in others]], others)
         return np.minimum(rest, self.radius - np.hypot(x, y))
+
+    def contains(self, poses: Array, names: Sequence[str], slack: float = _ROUNDING) -> Array:
+        """Within the circle and between the other bounds."""
+        x, y = poses[..., names.index("x")], poses[..., names.index("y")]
+        others = [name for name in names if name not in ("x", "y")]
+        rest = self._rest.contains(poses[..., [names.index(name) for name in others]], others, slack)
+        return rest & (np.hypot(x, y) <= self.radius * (1.0 + slack))
 
     def complete(self, given: Mapping[str, Array], unit: Array, names: Sequence[str]) -> Array:
         """Where neither x nor y is given, the first two columns are polar coordinates in the disc."""

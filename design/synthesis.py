@@ -6,19 +6,23 @@ answer was worst, until a dense search with descents agrees with the NLP. Only s
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from design.budget import Budget
 from design.errors import SynthesisFailed
 from design.nlp import NlpSolution, Problem, solve
 from design.region import Region
 from design.search import DENSE, WorstPoses, worst_poses
 from kinematics import Mechanism, UnreachablePose
+from kinematics.arguments import positive, whole
 
 Array = np.ndarray
+SECONDS = 600.0
 _ATTEMPTS = 200  # geometries drawn for each wanted start
+_DIGITS = 8  # of a variable, so that a file holds exactly what was checked
 
 
 @dataclass(frozen=True)
@@ -32,15 +36,37 @@ class Round:
     iterations: int
     seconds: float
 
-    def settled(self, tolerance: float) -> bool:
-        """Whether the dense search keeps the promise and every requirement holds."""
-        return self.found >= self.promised * (1.0 - tolerance) and self.shortfall <= 0.0
-
     def __str__(self) -> str:
         return (
-            f"{self.poses} poses, promised {self.promised:.6f}, dense search found {self.found:.6f}, "
+            f"{self.poses} poses, promised {self.promised:.6g}, dense search found {self.found:.6g}, "
             f"requirements short by {max(self.shortfall, 0.0):.1e}"
         )
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A geometry that was looked at densely, and that nothing says to be the best.
+
+    Attributes:
+        robot: the mechanism with this geometry.
+        worst: worst poses by margin, as far as a dense search looked.
+        objective: the worst value of the objective.
+        shortfall: how far the worst requirement is below its bound; <= 0 when all hold.
+    """
+
+    robot: Mechanism
+    worst: dict[str, WorstPoses]
+    objective: float
+    shortfall: float
+
+    @property
+    def rank(self) -> tuple[float, float]:
+        """The larger the better: whether requirements hold, then the objective."""
+        return -max(self.shortfall, 0.0), self.objective
+
+    def __str__(self) -> str:
+        short = f", requirements short by {self.shortfall:.3g}" if self.shortfall > 0.0 else ""
+        return f"{self.objective:.6g}{short} with {self.robot.geometry}"
 
 
 @dataclass(frozen=True)
@@ -75,6 +101,7 @@ def synthesise(
     about: int = DENSE,
     max_rounds: int = 20,
     tolerance: float = 1e-5,
+    seconds: float = SECONDS,
     progress: Progress = lambda _: None,
 ) -> Synthesis:
     """Maximise the worst objective over the region.
@@ -85,56 +112,99 @@ def synthesise(
         seed, starts: the prototype and `starts - 1` random geometries start the first NLP; the best answer goes on.
         about: size of the dense grids.
         max_rounds: exchanges before giving up.
-        tolerance: relative difference between the NLP's promise and the dense search at which they agree.
+        tolerance: difference between the NLP's promise and the dense search at which they agree, relative to the
+            objective's size.
+        seconds: wall-clock time before giving up.
         progress: told a line of text at each step.
 
     Raises:
-        SynthesisFailed: no start converged, the exchange did not settle, or a requirement fails on the dense sample.
+        SynthesisFailed: no start converged, the exchange did not settle, or the time was used up; with the best
+            geometry seen.
+        InvalidRegion, InvalidValue: the region is not the robot's, or a number means nothing.
     """
-    names = problem.robot.pose_names
-    region.check(names)
-    before = worst_of(problem, problem.robot, region, about)
-    poses = region.spread(names)
+    tolerance, starts = positive("tolerance", tolerance), whole("starts", starts, 1)
+    exchange = _Exchange(problem, region, about, Budget(seconds), progress)
+    region.check(problem.robot.pose_names)
+    before = worst_of(problem, problem.robot, region, about, exchange.budget.left)
+    exchange.note(problem.robot, before)
+    poses = region.spread(problem.robot.pose_names)
     firsts = _reaching_starts(problem, poses, seed, starts)
-    solution = _best(problem, poses, firsts, progress)
+    sizes = problem.sizes(problem.robot_with(firsts[0]), poses)
+    solution = exchange.best_of(poses, firsts, sizes)
     rounds: list[Round] = []
-    while len(rounds) < max_rounds:
-        robot = _robot(problem, solution.values)
-        after = worst_of(problem, robot, region, about)
-        rounds.append(_round(problem, solution, after, len(poses)))
+    for _ in range(whole("max_rounds", max_rounds, 1)):
+        robot = problem.robot_with(_rounded(problem, solution.values))
+        after = worst_of(problem, robot, region, about, exchange.budget.left)
+        found = exchange.note(robot, after)
+        rounds.append(_round(solution, found, len(poses)))
         progress(f"round {len(rounds)}: {rounds[-1]}")
-        if rounds[-1].settled(tolerance):
+        close = found.objective >= solution.objective - tolerance * max(abs(solution.objective), np.spacing(1.0))
+        if close and found.shortfall <= 0.0 and all(worst.complete for worst in after.values()):
             return Synthesis(robot, before, after, rounds, solution.status, after[problem.objective].sampled)
-        poses = np.concatenate([poses, *(_offenders(problem, solution, *item) for item in after.items())])
-        solution = _again(problem, poses, [solution.values, *firsts])
-    raise SynthesisFailed(f"the exchange did not settle; its last round: {rounds[-1]}", solution.status)
+        exchange.require_time(f"after {len(rounds)} rounds, the last one: {rounds[-1]}", solution)
+        poses = np.concatenate([poses, *(_offenders(problem, solution, sizes, *item) for item in after.items())])
+        solution = exchange.first_of(poses, [solution.values, *firsts], sizes)
+    raise SynthesisFailed(f"the exchange did not settle; its last round: {rounds[-1]}", solution.status, exchange.seen)
 
 
-def _again(problem: Problem, poses: Array, firsts: list[Array]) -> NlpSolution:
-    """The first converged solution; the last optimum may not reach the poses that were added, then the others start."""
-    for first in firsts:
-        solution = solve(problem, poses, first)
-        if solution.converged:
-            return solution
-    raise _not_converged(f"each of the NLP's {len(firsts)} starts over {len(poses)} poses", solution)
+@dataclass
+class _Exchange:
+    """What all rounds share, and the best geometry seen."""
 
+    problem: Problem
+    region: Region
+    about: int
+    budget: Budget
+    progress: Progress
+    seen: Candidate | None = field(default=None, init=False)
 
-def _best(problem: Problem, poses: Array, firsts: list[Array], progress: Progress) -> NlpSolution:
-    """The best converged solution of all starts."""
-    best: NlpSolution | None = None
-    for k, first in enumerate(firsts, start=1):
-        solution = solve(problem, poses, first)
-        progress(f"start {k} of {len(firsts)}: {solution.objective:.5f} ({solution.status})")
-        if solution.converged and (best is None or solution.objective > best.objective):
-            best = solution
-    if best is None:
-        raise _not_converged(f"each of the NLP's {len(firsts)} starts over {len(poses)} poses", solution)
-    return best
+    def note(self, robot: Mechanism, worst: dict[str, WorstPoses]) -> Candidate:
+        """A geometry that was looked at densely; the best one is kept."""
+        short = max((r.at_least - worst[r.margin].value for r in self.problem.requirements), default=-np.inf)
+        found = Candidate(robot, worst, worst[self.problem.objective].value, short)
+        if np.isfinite(found.objective) and (self.seen is None or found.rank > self.seen.rank):
+            self.seen = found
+        return found
 
+    def best_of(self, poses: Array, firsts: list[Array], sizes: Mapping[str, float]) -> NlpSolution:
+        """The best converged solution of all starts; each may take its share of the time."""
+        best: NlpSolution | None = None
+        for k, first in enumerate(firsts, start=1):
+            share = self.budget.share(len(firsts) - k + 2)
+            solution = solve(self.problem, poses, first, sizes, share.left)
+            self.progress(f"start {k} of {len(firsts)}: {solution.objective:.5g} ({solution.status})")
+            if solution.converged and (best is None or solution.objective > best.objective):
+                best = solution
+            if self.budget.spent:
+                break
+        return best if best is not None else self._fail(poses, firsts, solution)
 
-def _not_converged(what: str, solution: NlpSolution) -> SynthesisFailed:
-    short = "; ".join(f"{name} falls short by {by:.3g}" for name, by in solution.violations.items())
-    return SynthesisFailed(f"{what} did not converge{': ' + short if short else ''}", solution.status)
+    def first_of(self, poses: Array, firsts: list[Array], sizes: Mapping[str, float]) -> NlpSolution:
+        """The first converged solution; the last optimum may not reach poses that were added, then the others start."""
+        for k, first in enumerate(firsts):
+            solution = solve(self.problem, poses, first, sizes, self.budget.share(len(firsts) - k).left)
+            if solution.converged:
+                return solution
+        return self._fail(poses, firsts, solution)
+
+    def require_time(self, done: str, solution: NlpSolution) -> None:
+        """Check the budget.
+
+        Raises:
+            SynthesisFailed: it is used up.
+        """
+        if self.budget.spent:
+            raise SynthesisFailed(f"the budget of {self.budget} was used up {done}", solution.status, self.seen)
+
+    def _fail(self, poses: Array, firsts: list[Array], last: NlpSolution) -> NlpSolution:
+        """Raise what a solution that did not converge comes to, with its geometry where that is the best seen."""
+        robot = self.problem.robot_with(_rounded(self.problem, last.values))
+        if not self.budget.spent:
+            self.note(robot, worst_of(self.problem, robot, self.region, self.about, self.budget.left))
+        self.require_time(f"by the NLP over {len(poses)} poses", last)
+        short = "; ".join(f"{name} falls short by {by:.3g} of its size" for name, by in last.violations.items())
+        what = f"each of the NLP's {len(firsts)} starts over {len(poses)} poses did not converge"
+        raise SynthesisFailed(f"{what}{': ' + short if short else ''}", last.status, self.seen)
 
 
 def _reaching_starts(problem: Problem, poses: Array, seed: int, count: int) -> list[Array]:
@@ -149,8 +219,8 @@ def _reaching_starts(problem: Problem, poses: Array, seed: int, count: int) -> l
     nearest, shortest = problem.robot, -np.inf
     prototype = np.clip(problem.robot.geometry.vector()[problem.places()], low, high)
     for attempt in range(_ATTEMPTS * count):
-        values = prototype if attempt == 0 else low + (high - low) * rng.random(len(low))
-        robot = _robot(problem, values)
+        values = prototype if attempt == 0 else np.array(problem.from_unit(rng.random(len(low))))
+        robot = problem.robot_with(values)
         margin = float(np.nan_to_num(robot.margin("reach", poses), nan=-np.inf).min())
         if margin > 0.0:
             found.append(values)
@@ -169,44 +239,51 @@ def _reaching_starts(problem: Problem, poses: Array, seed: int, count: int) -> l
     return found
 
 
-def _robot(problem: Problem, values: Array) -> Mechanism:
-    """The mechanism with these variables, rounded to the micrometre so that a file holds exactly what was checked."""
+def _rounded(problem: Problem, values: Array) -> Array:
+    """(k,) the variables with so many digits, inside their bounds."""
     low, high = problem.bounds()
-    vector = problem.geometry(np.clip(np.round(values, 6), low, high))
-    return type(problem.robot)(problem.robot.Geometry.from_vector(vector), problem.robot.inertia, problem.robot.ranges)
+    return np.clip([float(f"{value:.{_DIGITS}g}") for value in values], low, high)
 
 
-def worst_of(problem: Problem, robot: Mechanism, region: Region, about: int = DENSE) -> dict[str, WorstPoses]:
-    """Worst poses of the objective and of each requirement, by margin, from a grid of about that many poses."""
-    margins = dict.fromkeys([problem.objective, *(r.margin for r in problem.requirements)])
-    return {
-        margin: worst_poses(
+def worst_of(
+    problem: Problem, robot: Mechanism, region: Region, about: int = DENSE, seconds: float = np.inf
+) -> dict[str, WorstPoses]:
+    """Worst poses of the objective and of each requirement, by margin, from a grid of about that many poses.
+
+    Args:
+        seconds: for all of them; see `WorstPoses.complete`.
+    """
+    budget, found = Budget(max(seconds, 1e-9)), {}
+    for k, margin in enumerate(problem.margins):
+        found[margin] = worst_poses(
             robot,
             region,
             margin,
             bounds=problem.fvi_bounds,
             characteristic_length=problem.characteristic_length,
             about=about,
+            seconds=budget.share(len(problem.margins) - k).seconds,
         )
-        for margin in margins
-    }
+    return found
 
 
-def _round(problem: Problem, solution: NlpSolution, after: dict[str, WorstPoses], poses: int) -> Round:
-    shortfalls = [r.at_least - after[r.margin].value for r in problem.requirements]
+def _round(solution: NlpSolution, found: Candidate, poses: int) -> Round:
     return Round(
         poses=poses,
         promised=solution.objective,
-        found=after[problem.objective].value,
-        shortfall=max(shortfalls, default=-np.inf),
+        found=found.objective,
+        shortfall=found.shortfall,
         iterations=solution.iterations,
         seconds=solution.seconds,
     )
 
 
-def _offenders(problem: Problem, solution: NlpSolution, margin: str, worst: WorstPoses) -> Array:
+def _offenders(
+    problem: Problem, solution: NlpSolution, sizes: Mapping[str, float], margin: str, worst: WorstPoses
+) -> Array:
     """(k, n) poses at which the last answer does worse than it promised."""
-    floors = [r.at_least + problem.spare for r in problem.requirements if r.margin == margin]
+    spare = problem.spare * sizes[margin]
+    floors = [r.at_least + spare for r in problem.requirements if r.margin == margin]
     if margin == problem.objective:
         floors.append(solution.objective)
     return worst.poses[worst.values < max(floors)]

@@ -113,8 +113,8 @@ def _apply(code, same, a, b, c, d, r, s):  # type: ignore[no-untyped-def]
         for i in range(r.size):
             p, q = a[i] * a[i], b[i] * b[i]
             least = 0.0 if a[i] <= 0.0 <= b[i] else min(p, q)
-            low, s[i] = _out(least, max(p, q), _TINY)
-            r[i] = max(low, 0.0)
+            low, most = _out(least, max(p, q), _TINY)
+            r[i], s[i] = max(low, 0.0) if most < np.inf else -np.inf, most  # a square of what is undefined is undefined
     elif code == MUL:
         for i in range(r.size):
             p, q, u, v = a[i] * c[i], a[i] * d[i], b[i] * c[i], b[i] * d[i]

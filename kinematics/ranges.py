@@ -17,8 +17,9 @@ from kinematics.geometry import numbers_of
 
 Array = np.ndarray
 Pair = tuple[float, float]
-# Squared sine below which a tilt is rounded off: its cone has a tip without a gradient, where joints often rest.
-_TIP = 1e-16
+# Squared sine of a tilt that is taken for smaller ones, beyond what doubles tell apart from 0 beside an angle of
+# about 1: there the tilt's cone has its tip, without a gradient, and joints often rest in it.
+_TIP = 1e-26
 
 
 @dataclass(frozen=True)
@@ -97,13 +98,13 @@ class PassiveJoint(NamedTuple):
     swivels: bool = True
 
     def room(self, limits: Pair) -> list[ca.SX]:
-        """What is left to the limit [rad], each to be at least the margin; up to 1e-8 less within 1e-7 of an axis."""
+        """What is left to the limit [rad], each to be at least the margin; within 1e-13 of an axis 1e-13 less."""
         along = ca.dot(self.axis, self.rod) / self.length
         across = ca.sumsqr(ca.cross(self.axis, self.rod)) / self.length**2
         if self.swivels:
             lean = ca.atan2(along, ca.sqrt(across))
             return [limits[self.end] - lean, limits[self.end] + lean]
-        return [limits[self.end] - ca.atan2(ca.sqrt(across + _TIP), along)]
+        return [limits[self.end] - ca.atan2(ca.sqrt(ca.fmax(across, _TIP)), along)]
 
     def within(self, limits: Pair, margin: ca.SX) -> list[ca.SX]:
         """At least 0 if and only if the room is at least the margin; without an arctangent.

@@ -1,11 +1,10 @@
 """The study file: one question, asked in `study.toml`, as a frozen model in SI and radians."""
 
-import hashlib
-import json
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
+from studies.questions import digest_of, plain
 from studies.schema_base import Interval, Model, Name, Positive, gathered, table_of
 from studies.schema_hardware import Inertia, Ranges
 from studies.schema_trajectory import Trajectory
@@ -102,6 +101,25 @@ class Certify(Model):
     """After so many a claim stays undecided."""
 
 
+Seconds = Annotated[Positive, Key("a time > 0 (s)")]
+
+
+class Budget(Model):
+    """How long a stage may take; what it has reached by then stands, and is reported."""
+
+    optimise: Seconds = 90.0
+    """Of the search for the best geometry [s]; one that is not found by then is none, and the best seen is told."""
+    prove: Seconds = 40.0
+    """Of all claims together [s]; what is not decided by then is reported as undecided."""
+    map: Seconds = 60.0
+    """Of a map, and of its certified part [s]."""
+
+    @classmethod
+    def each(cls, seconds: float) -> Self:
+        """The same for each stage."""
+        return cls(**dict.fromkeys(cls.model_fields, seconds))
+
+
 class Study(Model):
     """A whole study; `studies.load.load_study` reads one and checks it against its mechanism."""
 
@@ -133,22 +151,10 @@ class Study(Model):
     """What is proved."""
     trajectory: Annotated[Trajectory | None, table_of(Trajectory)] = None
     """What is timed; None for no cycle."""
+    budget: Annotated[Budget, table_of(Budget)] = Budget()
+    """How long each stage may take."""
 
     @property
     def digest(self) -> str:
-        """sha256 (hex) of all that the file says, in SI to 12 digits; its folder's name is left out."""
-        canonical = json.dumps(_rounded(self.model_dump(exclude={"name"}, exclude_defaults=True)), sort_keys=True)
-        return hashlib.sha256(canonical.encode()).hexdigest()
-
-
-def _rounded(value: Any) -> Any:
-    """Twelve digits forgive what converting a unit rounds off."""
-    match value:
-        case float():
-            return float(f"{value:.12g}") + 0.0  # no negative zero
-        case dict():
-            return {key: _rounded(entry) for key, entry in value.items()}
-        case list() | tuple():
-            return [_rounded(entry) for entry in value]
-        case _:
-            return value
+        """sha256 (hex) of all that the file says but its budget, in SI to 12 digits; without its folder's name."""
+        return digest_of(plain(self.model_dump(exclude={"name", "budget"}, exclude_defaults=True)))

@@ -23,7 +23,7 @@ class Cycle(Model):
     pick: Annotated[tuple[float, float, float], Key("three lengths x, y, z", LENGTH)]
     """Where the cycle starts."""
     size: Annotated[str | None, Key("one of", choices=tuple(STANDARD_SIZES))] = None
-    """Lift, span and place lift at once [mm]."""
+    """Lift, span and place lift at once [mm]; a size says nothing of the corners, so it needs a blend beside it."""
     place: Annotated[
         tuple[float, float, float] | None, Key("three lengths x, y, z, not above the pick; no size beside it", LENGTH)
     ] = None
@@ -42,7 +42,9 @@ class Cycle(Model):
     """Place above pick."""
     heading: Annotated[float, Key("an angle; no place beside it", ANGLE)] = 0.0
     """Direction of the span about z, from x."""
-    blend: Annotated[Positive, Key("a length > 0, at most the lift and at most half the span", LENGTH)]
+    blend: Annotated[
+        Positive, Key("a length > 0, at most the lift and at most half the span; needed beside a size, too", LENGTH)
+    ]
     """What a corner takes off each of its legs."""
     turn: Annotated[float, Key("an angle", ANGLE)] = 0.0
     """Change of theta, or yaw, from pick to place."""

@@ -131,7 +131,7 @@ def test_a_region_partly_out_of_reach_is_never_proved(margin: str, at_least: flo
 
 def test_a_bound_below_zero_is_not_proved_out_of_reach_either(monkeypatch: pytest.MonkeyPatch) -> None:
     """The moduli are trivially above it wherever they have a value."""
-    monkeypatch.setattr("design.statement.Statement.refutation", lambda *_: None)
+    monkeypatch.setattr("design.refutation.Refuter.refutation", lambda *_: None)
     beyond = Box(x=(0.0, 1.4), y=0.0, z=-0.7, theta=0.0)
     for margin in Heli4.margins:
         found = certify(Heli4(), beyond, margin, at_least=-1e-3, most_boxes=5_000)
@@ -151,7 +151,7 @@ def test_no_margin_of_any_robot_is_proved_beyond_reach(
     for at_least in (-1.0, 1e-9):
         for margin in robot.margins[1:]:
             assert certify(robot, beyond, margin, at_least=at_least, most_boxes=3_000).status == "refuted"
-    monkeypatch.setattr("design.statement.Statement.refutation", lambda *_: None)
+    monkeypatch.setattr("design.refutation.Refuter.refutation", lambda *_: None)
     for at_least in (-1.0, 1e-9):
         for margin in robot.margins[1:]:
             assert certify(robot, beyond, margin, at_least=at_least, most_boxes=3_000).status == "undecided", margin
@@ -251,7 +251,7 @@ class Jumping(Heli4):
 
 @pytest.mark.parametrize("margin", ["branch", "sign", "turn"])
 def test_no_slope_speaks_for_the_far_side_of_a_jump(margin: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("design.statement.Statement.refutation", lambda *_: None)
+    monkeypatch.setattr("design.refutation.Refuter.refutation", lambda *_: None)
     good = (0.11, 0.2) if margin == "turn" else (-0.02, 0.09)
     across, aside = (Box(x=x, y=0.0, z=-0.7, theta=0.0) for x in ((-0.02, 0.2), good))
     assert certify(Jumping(), across, margin, at_least=0.5, most_boxes=5_000).status == "undecided"
@@ -298,7 +298,7 @@ def test_room_is_proved_close_to_the_worst_found_and_refuted_just_above(
 
 def test_a_bound_beyond_the_whole_range_is_never_proved(monkeypatch: pytest.MonkeyPatch) -> None:
     """The sine and cosine of an angle below 0 would allow what the angle does not."""
-    monkeypatch.setattr("design.statement.Statement.refutation", lambda *_: None)
+    monkeypatch.setattr("design.refutation.Refuter.refutation", lambda *_: None)
     for robot, region in ((Heli4(), PART), (GoughStewart(), HEXAPOD)):
         for beyond in (0.1, 2 * math.pi):
             bound = max(robot.ranges.passive) + beyond
@@ -306,7 +306,7 @@ def test_a_bound_beyond_the_whole_range_is_never_proved(monkeypatch: pytest.Monk
 
 
 def test_arms_that_touch_are_never_proved_apart(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("design.statement.Statement.refutation", lambda *_: None)
+    monkeypatch.setattr("design.refutation.Refuter.refutation", lambda *_: None)
     touching = Box(x=0.0, y=(0.3, 0.75), z=(-0.3, -0.15), theta=(-0.3, 0.3))
     assert worst_poses(Redundant3T1R(), touching, "clearance", about=20_000).value < 1e-3
     for bound in (0.0, 0.002):
