@@ -19,6 +19,7 @@ from studies import setup
 from studies.schema import Study
 from studies.stages import Progress
 
+
 @dataclass(frozen=True)
 class Claim:
     """`margin` is `at_least` this everywhere; with `best`, the best bound that can be proved, no lower than this."""

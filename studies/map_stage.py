@@ -17,6 +17,7 @@ from design.level_sets import LevelSet, level_set
 from studies.map_options import InvalidOption, MapRequest, angles_of
 from studies.stages import Progress, stage
 
+
 @dataclass(frozen=True)
 class MapOutcome:
     """A map, its level set, and the certified region where one was asked for."""

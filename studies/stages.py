@@ -34,4 +34,3 @@ def stage(name: str, progress: Progress, seconds: float = math.inf) -> Iterator[
         if (took := time.perf_counter() - started) > LONG:
             budget = f" of {seconds:g} s" if seconds < math.inf else ""
             progress(Lasting(f"{name} took {took:.1f} s{budget}"))
-

@@ -206,7 +206,7 @@ def _is_a_size(number: float) -> bool:
 
 def _in_si(value: Any, suffix: str) -> Any:
     if isinstance(value, list):
-        return tuple(in_si(entry, suffix) for entry in value)
+        return tuple(_in_si(entry, suffix) for entry in value)
     if isinstance(value, bool) or not isinstance(value, int | float):
         return value
     try:
