@@ -26,7 +26,7 @@ _TRIES = 40
 _LEAST_CURVATURE = 0.1  # of the time's, which a mean square torque can use up
 SOLVED, OUTSIDE, SINGULAR, STUCK, SLOW = 0, 1, 2, 3, 4
 
-_COMPILED = {"cache": True, "error_model": "numpy", "fastmath": {"contract", "reassoc", "nsz", "arcp"}}
+COMPILED = {"cache": True, "error_model": "numpy", "fastmath": {"contract", "reassoc", "nsz", "arcp"}}
 
 
 class Outcome(NamedTuple):
@@ -38,7 +38,7 @@ class Outcome(NamedTuple):
     gap: float
 
 
-@njit(**_COMPILED)
+@njit(**COMPILED)
 def cubic_basis(at: float, size: float, out: Array) -> None:
     """(3, 4): x, w and z at a share of an interval of that size, by x and w at its start and at its end."""
     square, cube = at * at, at * at * at
@@ -52,7 +52,7 @@ def cubic_basis(at: float, size: float, out: Array) -> None:
     out[2, 1], out[2, 3] = (6.0 * at - 4.0) / size, (6.0 * at - 2.0) / size
 
 
-@njit(**_COMPILED)
+@njit(**COMPILED)
 def _all_bases(sizes: Array) -> Array:
     found = np.empty((sizes.size, _STATIONS, 3, 4))
     for k in range(sizes.size):
@@ -61,7 +61,7 @@ def _all_bases(sizes: Array) -> Array:
     return found
 
 
-@njit(**_COMPILED)
+@njit(**COMPILED)
 def _states(bases: Array, y: Array, out: Array) -> None:
     """x, w and z at the stations."""
     for k in range(bases.shape[0]):
@@ -72,7 +72,7 @@ def _states(bases: Array, y: Array, out: Array) -> None:
                 out[k, i, e] = base[e, 0] * a + base[e, 1] * b + base[e, 2] * c + base[e, 3] * d
 
 
-@njit(**_COMPILED)
+@njit(**COMPILED)
 def _slacks(states: Array, rows: Rows, tight: Array, out: Array) -> float:
     """What is left of each row; the least of it, of x too, over all stations."""
     least = math.inf
@@ -104,7 +104,7 @@ def _slacks(states: Array, rows: Rows, tight: Array, out: Array) -> float:
     return least
 
 
-@njit(**_COMPILED)
+@njit(**COMPILED)
 def _means(states: Array, sizes: Array, rows: Rows, tight: Array, out: Array) -> float:
     """What is left of each mean square torque, integrated; the least of them."""
     out[:] = 0.0
@@ -122,7 +122,7 @@ def _means(states: Array, sizes: Array, rows: Rows, tight: Array, out: Array) ->
     return least
 
 
-@njit(**_COMPILED)
+@njit(**COMPILED)
 def _gradients(states: Array, rows: Rows, tight: Array, out: Array) -> None:
     """Of each row's use by x, w and z."""
     forces, joints, tools = rows.force.shape[1], rows.jerk.shape[1], rows.tool.shape[1]
@@ -148,7 +148,7 @@ def _gradients(states: Array, rows: Rows, tight: Array, out: Array) -> None:
                 of[at + 1, 0], of[at + 1, 1] = c[1] * w + 2.0 * c[2] * x, 2.0 * c[0] * w + c[1] * x
 
 
-@njit(**_COMPILED)
+@njit(**COMPILED)
 def _row_curvature(x: float, duals: Array, force: Array, tool: Array, local: Array) -> None:
     """Of the rows whose curvature is positive: sqrt(x) that helps, and the tool's acceleration."""
     cube = 0.25 / (x * math.sqrt(x))
@@ -163,7 +163,7 @@ def _row_curvature(x: float, duals: Array, force: Array, tool: Array, local: Arr
         local[2] += 2.0 * tool[j, 0] * dual
 
 
-@njit(**_COMPILED)
+@njit(**COMPILED)
 def _mean_terms(
     share: float, x: float, w: float, mean: Array, tight: Array, duals: Array, local: Array, slopes: Array
 ) -> None:
@@ -180,7 +180,7 @@ def _mean_terms(
         local[2] += scale * by_w * by_w
 
 
-@njit(**_COMPILED)
+@njit(**COMPILED)
 def _assemble(
     states: Array,
     bases: Array,
@@ -237,7 +237,7 @@ def _assemble(
     return time
 
 
-@njit(**_COMPILED)
+@njit(**COMPILED)
 def _newton_step(
     band: Array, right: Array, mean_gradient: Array, mean_slack: Array, mean_dual: Array, target: float
 ) -> bool:
@@ -264,13 +264,13 @@ def _newton_step(
     return True
 
 
-@njit(**_COMPILED)
+@njit(**COMPILED)
 def _to_the_edge(value: float, change: float, size: float) -> float:
     """The share of a change, at most `size`, that leaves a little of a positive value."""
     return min(size, -_TO_EDGE * value / change) if change < 0.0 else size
 
 
-@njit(**_COMPILED)
+@njit(**COMPILED)
 def _dual_step(
     moved: Array, states: Array, slack: Array, dual: Array, gradient: Array, target: float, change: Array
 ) -> tuple[float, float]:
@@ -289,7 +289,7 @@ def _dual_step(
     return primal, of_dual
 
 
-@njit(**_COMPILED)
+@njit(**COMPILED)
 def search(
     sizes: Array,
     rows: Rows,
