@@ -210,7 +210,8 @@ def _assemble(
             local[0], force[0] = 0.75 * bend * share / (x * x), 0.5 * weight * share / x
             for e in range(slack.shape[2]):
                 left, a, b, c = slack[k, i, e], gradient[k, i, e, 0], gradient[k, i, e, 1], gradient[k, i, e, 2]
-                pull, q = target / left, dual[k, i, e] / left
+                inverse = 1.0 / left
+                pull, q = target * inverse, dual[k, i, e] * inverse
                 force[0] -= pull * a
                 force[1] -= pull * b
                 force[2] -= pull * c
@@ -267,7 +268,7 @@ def _newton_step(
 @njit(**COMPILED)
 def _to_the_edge(value: float, change: float, size: float) -> float:
     """The share of a change, at most `size`, that leaves a little of a positive value."""
-    return min(size, -_TO_EDGE * value / change) if change < 0.0 else size
+    return -_TO_EDGE * value / change if -change * size > _TO_EDGE * value else size
 
 
 @njit(**COMPILED)
@@ -290,12 +291,35 @@ def _dual_step(
 
 
 @njit(**COMPILED)
+def keeping(sizes: Array, rows: Rows, tight: Array, mean_tight: Array, y: Array) -> float:
+    """The share of a motion's squared rate that keeps all the rows strictly; 0 where none is found."""
+    bases, states = _all_bases(sizes), np.empty((sizes.size, _STATIONS, 3))
+    slack = np.empty((sizes.size, _STATIONS, row_count(rows)))
+    mean_slack, given = np.empty(mean_tight.size), 0.005
+    for _ in range(_TRIES):
+        share = 1.0 - given if given < 0.7 else 0.7 * 0.64 / given
+        _states(bases, y * share, states)
+        if _slacks(states, rows, tight, slack) > 0.0 and _means(states, sizes, rows, mean_tight, mean_slack) > 0.0:
+            return share
+        given *= 2.0
+    return 0.0
+
+
+@njit(**COMPILED)
+def row_count(rows: Rows) -> int:
+    """At each station."""
+    return 2 * rows.force.shape[1] + 2 * rows.jerk.shape[1] + 1 + rows.tool.shape[1]
+
+
+@njit(**COMPILED)
 def search(
     sizes: Array,
     rows: Rows,
     tight: Array,
     mean_tight: Array,
     y: Array,
+    dual: Array,
+    mean_dual: Array,
     weight: float,
     barrier: float,
     tolerance: float,
@@ -309,6 +333,7 @@ def search(
         tight: (n, f + m + 1 + c) what each interval's rows are kept to: forces, jerks, x, tool.
         mean_tight: (m or 0,) what the mean squares are kept to.
         y: (2 n + 2,) x and w at the knots; the answer comes in its place.
+        dual, mean_dual: at least these, of a problem that is close; 0 is none. The answer's come in their place.
         weight: of the time; 0 seeks the place furthest from all rows.
         barrier: product of each row's slack and dual at the start.
         tolerance: of the time, relative.
@@ -317,8 +342,8 @@ def search(
     Returns:
         As `Outcome`.
     """
-    n, count, ranks = sizes.size, rows.mean.shape[1], 2 * rows.force.shape[1] + 2 * rows.jerk.shape[1]
-    shape = (n, _STATIONS, ranks + 1 + rows.tool.shape[1])
+    n, count = sizes.size, rows.mean.shape[1]
+    shape = (n, _STATIONS, row_count(rows))
     bases, states, tried, moved = _all_bases(sizes), np.empty((n, _STATIONS, 3)), np.empty((n, _STATIONS, 3)), np.empty((n, _STATIONS, 3))
     slack, next_slack, gradient, change = np.empty(shape), np.empty(shape), np.empty((*shape, 3)), np.empty(shape)
     mean_slack, next_mean = np.empty(count), np.empty(count)
@@ -326,8 +351,8 @@ def search(
     _states(bases, y, states)
     if not (_slacks(states, rows, tight, slack) > 0.0 and _means(states, sizes, rows, mean_tight, mean_slack) > 0.0):
         return OUTSIDE, 0, math.nan, math.nan
-    dual, mean_dual, centring = barrier / slack, barrier / mean_slack, 0.15
-    time, gap = math.nan, math.nan
+    dual[:], mean_dual[:] = np.maximum(dual, barrier / slack), np.maximum(mean_dual, barrier / mean_slack)
+    centring, time, gap = 0.15, math.nan, math.nan
     for step in range(most_steps):
         gap = (slack * dual).sum() + (mean_slack * mean_dual).sum()
         target = centring * gap / (slack.size + count) if weight else barrier

@@ -9,6 +9,9 @@ import numpy as np
 from trajectory.jerk.rows import Array, smoothstep
 from trajectory.timing import TimeLaw
 
+_FAITHFUL = 3e-4  # of a limit of jerk: how far the law's may be from the motion's
+_HALVINGS = 12
+
 
 class SquaredRate(NamedTuple):
     """x = u'^2 as a cubic of u in each interval.
@@ -49,26 +52,67 @@ class SquaredRate(NamedTuple):
         return np.concatenate([[0.0], np.cumsum((pace[1:] + pace[:-1]) / 2 * np.diff(self.knots))])
 
 
-def law_in_time(motion: SquaredRate, length: float, unit: float) -> TimeLaw:
+def law_in_time(motion: SquaredRate, length: float, unit: float, per_jerk: Array) -> TimeLaw:
     """The law whose arc length, speed and acceleration at the knots are the motion's, quartic in between.
 
     Over an interval of time h a quartic that joins (s, v, a) and (s + ds, v+, a+) exists for one h alone:
     ds = h (v + v+) / 2 + h^2 (a - a+) / 12. With V = (v+ - v - a h) / h^2 and A = (a+ - a) / h its third derivative
-    goes from 6 V - 2 A to 4 A - 6 V.
+    goes from 6 V - 2 A to 4 A - 6 V. Intervals are halved until that is close to the motion's own.
 
     Args:
         motion: in a unit of time.
         length: of the path [m].
         unit: of time [s].
+        per_jerk: (n + 1,) at the motion's knots, the share of the limits of jerk that one m/s^3 along the path uses.
     """
-    share, first, second, _ = smoothstep(motion.knots)
-    x, w = motion.values[::2] / unit**2, motion.values[1::2] / unit**2
+    knots = motion.knots
+    for _ in range(_HALVINGS):
+        found = _quartics(knots, motion, length, unit)
+        own = _third_derivatives(knots, motion, length, unit)
+        away = np.abs(found.jerks - own).max(axis=0) * np.interp((knots[1:] + knots[:-1]) / 2, motion.knots, per_jerk)
+        rough = ~(away <= _FAITHFUL)  # where no quartic joins the ends too
+        if not rough.any():
+            break
+        knots = np.sort(np.append(knots, (knots[1:] + knots[:-1])[rough] / 2))
+    s, v, a, h, (first, last) = found
+    times = np.concatenate([[0.0], np.cumsum(h)])
+    return TimeLaw("jerk", times, s, v, a[:-1], first, (last - first) / h)
+
+
+class _Quartics(NamedTuple):
+    """Arc length, speed and acceleration (n + 1,) at knots; times (n,) and jerks (2, n) of the intervals."""
+
+    position: Array
+    speed: Array
+    acceleration: Array
+    steps: Array
+    jerks: Array
+
+
+def _quartics(knots: Array, motion: SquaredRate, length: float, unit: float) -> _Quartics:
+    share, first, second, _ = smoothstep(knots)
+    at_knots = motion.at(knots)
+    x, w = at_knots[::2] / unit**2, at_knots[1::2] / unit**2
     s, v, a = length * share, length * first * np.sqrt(x), length * (second * x + first * w)
     s[-1] = length
     v[[0, -1]] = a[[0, -1]] = 0.0
-    step, mean, bend = np.diff(s), (v[:-1] + v[1:]) / 2, (a[:-1] - a[1:]) / 12
-    h = 2.0 * step / (mean + np.sqrt(mean**2 + 4.0 * bend * step))
+    to_end, _, _, _ = smoothstep(1.0 - knots)  # near the end the arc length itself is rounded too much
+    step = length * np.where(knots[1:] < 0.5, np.diff(share), -np.diff(to_end))
+    mean, bend = (v[:-1] + v[1:]) / 2, (a[:-1] - a[1:]) / 12
+    with np.errstate(invalid="ignore"):
+        h = 2.0 * step / (mean + np.sqrt(mean**2 + 4.0 * bend * step))
     by_speed, by_acceleration = (np.diff(v) - a[:-1] * h) / h**2, np.diff(a) / h
-    first_jerk, last_jerk = 6.0 * by_speed - 2.0 * by_acceleration, 4.0 * by_acceleration - 6.0 * by_speed
-    times = np.concatenate([[0.0], np.cumsum(h)])
-    return TimeLaw("jerk", times, s, v, a[:-1], first_jerk, (last_jerk - first_jerk) / h)
+    jerks = np.stack([6.0 * by_speed - 2.0 * by_acceleration, 4.0 * by_acceleration - 6.0 * by_speed])
+    return _Quartics(s, v, a, h, jerks)
+
+
+def _third_derivatives(knots: Array, motion: SquaredRate, length: float, unit: float) -> Array:
+    """(2, n) of the arc length by time, where each interval starts and where it ends."""
+    _, first, second, third = smoothstep(knots)
+    at_knots = motion.at(knots)
+    x, w = at_knots[::2], at_knots[1::2]
+    smooth = 3.0 * second * w + third * x
+    size, slope = np.diff(knots), np.diff(x) / np.diff(knots)
+    z = (3.0 * slope - 4.0 * w[:-1] - 2.0 * w[1:]) / size, (2.0 * w[:-1] + 4.0 * w[1:] - 3.0 * slope) / size
+    ends = slice(None, -1), slice(1, None)
+    return np.stack([np.sqrt(x[e]) * (first[e] * z[k] + smooth[e]) for k, e in enumerate(ends)]) * (length / unit**3)

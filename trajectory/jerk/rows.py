@@ -55,9 +55,10 @@ class Rows(NamedTuple):
             self.mean * of_force[:4],
         )
 
-    def every(self, step: int) -> Rows:
-        """At every so many of the stations."""
-        return Rows(*(np.ascontiguousarray(part[::step]) for part in self))
+    @property
+    def tight_count(self) -> int:
+        """How many numbers tighten the rows of an interval: one for each force, jerk, x and tool."""
+        return self.force.shape[1] + self.jerk.shape[1] + 1 + self.tool.shape[1]
 
 
 def smoothstep(u: Array) -> tuple[Array, Array, Array, Array]:
@@ -76,15 +77,15 @@ def progress_at(share: Array) -> Array:
     return (low + high) / 2
 
 
-def stations(knots: Array, parts: int) -> Array:
-    """(n parts + 1,) of n intervals, each in so many equal parts."""
-    inside = knots[:-1, None] + np.diff(knots)[:, None] * (np.arange(parts) / parts)
+def stations(knots: Array) -> Array:
+    """(PARTS n + 1,) of n intervals."""
+    inside = knots[:-1, None] + np.diff(knots)[:, None] * (np.arange(PARTS) / PARTS)
     return np.append(inside.ravel(), knots[-1])
 
 
-def rows_of(robot: Mechanism, path: Path, limits: Limits, payload: float, knots: Array, parts: int) -> Rows:
+def rows_of(robot: Mechanism, path: Path, limits: Limits, payload: float, knots: Array) -> Rows:
     """The rows in SI units, at the stations of intervals between knots (n + 1,) of u."""
-    u = stations(knots, parts)
+    u = stations(knots)
     share, *slopes = smoothstep(u)
     along = tuple(path.length * v for v in slopes)
     derivatives = path.evaluate(np.clip(path.length * share, 0.0, path.length), 3)
@@ -94,7 +95,7 @@ def rows_of(robot: Mechanism, path: Path, limits: Limits, payload: float, knots:
     force = [] if (row := _acceleration(joints, along, limits)) is None else [row]
     mean = np.empty((u.size, 0, 4))
     if torque is not None:
-        both = _turning(joints.first, parts)
+        both = _turning(joints.first)
         force += _torque_rows(robot, limits, torque, joints, along, both)
         if (rms := limits.of_joints("rms_torque", count)) is not None:
             mean = torque / rms[:, None]
@@ -172,15 +173,16 @@ def _usual_rate(joints: JointMotion, along: tuple[Array, ...], limits: Limits) -
     return min(most, float(jerk.max()) ** (-1 / 3))
 
 
-def _turning(first: Array, parts: int) -> Array:
+def _turning(first: Array) -> Array:
     """(g, m) whether the joint turns back in an interval that the station belongs to: Coulomb friction may be either."""
     sign = np.sign(first)
-    same = np.ones((first.shape[0] // parts, first.shape[1]), dtype=bool)
-    for k in range(1, parts + 1):
-        same &= sign[k::parts][: same.shape[0]] == sign[:-1:parts]
+    starts = sign[:-1:PARTS]
+    apart = np.zeros(starts.shape, dtype=bool)
+    for k in range(1, PARTS + 1):
+        apart |= sign[k::PARTS] != starts
     turning = np.zeros(first.shape, dtype=bool)
-    for k in range(parts + 1):
-        turning[k : first.shape[0] - parts + k : parts] |= ~same
+    for k in range(PARTS + 1):
+        turning[k : first.shape[0] - PARTS + k : PARTS] |= apart
     return turning
 
 
