@@ -39,14 +39,14 @@ from trajectory.waypoint_file import read_waypoints
 
 if TYPE_CHECKING:
     from trajectory.free_law import free_motion
-    from trajectory.jerk_law import jerk_limited
+    from trajectory.jerk import jerk_limited
     from trajectory.moves import Move, plan_move, plan_stop
     from trajectory.toppra_law import time_optimal
 
 _LAZY = {
     "Move": "trajectory.moves",
     "free_motion": "trajectory.free_law",
-    "jerk_limited": "trajectory.jerk_law",
+    "jerk_limited": "trajectory.jerk",
     "plan_move": "trajectory.moves",
     "plan_stop": "trajectory.moves",
     "time_optimal": "trajectory.toppra_law",

@@ -191,7 +191,6 @@ def _assemble(
     gradient: Array,
     mean_tight: Array,
     mean_dual: Array,
-    weight: float,
     target: float,
     band: Array,
     right: Array,
@@ -199,7 +198,7 @@ def _assemble(
 ) -> float:
     """Newton's matrix and right-hand side without the mean squares' ranks; the time."""
     band[:], right[:], mean_gradient[:], time = 0.0, 0.0, 0.0, 0.0
-    bend = max(weight - (mean_dual * mean_tight).sum(), _LEAST_CURVATURE)
+    bend = max(1.0 - (mean_dual * mean_tight).sum(), _LEAST_CURVATURE)
     local, force, slopes = np.empty(6), np.empty(3), np.empty((mean_dual.size, 2))
     for k in range(sizes.size):
         for i in range(_STATIONS):
@@ -207,7 +206,7 @@ def _assemble(
             share = _WEIGHTS[i] * sizes[k] / math.sqrt(x)
             time += share
             local[:], force[:] = 0.0, 0.0
-            local[0], force[0] = 0.75 * bend * share / (x * x), 0.5 * weight * share / x
+            local[0], force[0] = 0.75 * bend * share / (x * x), 0.5 * share / x
             for e in range(slack.shape[2]):
                 left, a, b, c = slack[k, i, e], gradient[k, i, e, 0], gradient[k, i, e, 1], gradient[k, i, e, 2]
                 inverse = 1.0 / left
@@ -292,7 +291,7 @@ def _dual_step(
 
 @njit(**COMPILED)
 def keeping(sizes: Array, rows: Rows, tight: Array, mean_tight: Array, y: Array) -> float:
-    """The share of a motion's squared rate that keeps all the rows strictly; 0 where none is found."""
+    """The share of a motion's squared rate, below 1, that keeps all the rows strictly; 0 where none is found."""
     bases, states = _all_bases(sizes), np.empty((sizes.size, _STATIONS, 3))
     slack = np.empty((sizes.size, _STATIONS, row_count(rows)))
     mean_slack, given = np.empty(mean_tight.size), 0.005
@@ -320,7 +319,6 @@ def search(
     y: Array,
     dual: Array,
     mean_dual: Array,
-    weight: float,
     barrier: float,
     tolerance: float,
     most_steps: int,
@@ -334,7 +332,6 @@ def search(
         mean_tight: (m or 0,) what the mean squares are kept to.
         y: (2 n + 2,) x and w at the knots; the answer comes in its place.
         dual, mean_dual: at least these, of a problem that is close; 0 is none. The answer's come in their place.
-        weight: of the time; 0 seeks the place furthest from all rows.
         barrier: product of each row's slack and dual at the start.
         tolerance: of the time, relative.
         most_steps: before it gives up.
@@ -355,10 +352,10 @@ def search(
     centring, time, gap = 0.15, math.nan, math.nan
     for step in range(most_steps):
         gap = (slack * dual).sum() + (mean_slack * mean_dual).sum()
-        target = centring * gap / (slack.size + count) if weight else barrier
+        target = centring * gap / (slack.size + count)
         _gradients(states, rows, tight, gradient)
         time = _assemble(
-            states, bases, sizes, rows, slack, dual, gradient, mean_tight, mean_dual, weight, target, band, right, mean_gradient
+            states, bases, sizes, rows, slack, dual, gradient, mean_tight, mean_dual, target, band, right, mean_gradient
         )
         if step and gap <= tolerance * time:
             return SOLVED, step, time, gap

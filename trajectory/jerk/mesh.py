@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from trajectory.jerk.rows import Array, progress_at
+from trajectory.jerk.motion import SquaredRate
+from trajectory.jerk.rows import PARTS, Array, progress_at
 from trajectory.path import Path
 
 LEAST_IN_PIECE = 3  # intervals between two of the path's knots
 _BY_TIME = 0.8  # share of the knots that stand at equal times; the others at equal u
+_BY_EXCESS = 0.2  # share of all the knots that stand where rows are exceeded between the stations
 _SHORTEST = 1e-9  # of u: closer knots of the path are one
 
 
@@ -27,16 +29,25 @@ def first_mesh(edges: Array, intervals: int) -> Array:
     return _divided(edges, np.array([0.0, 1.0]), np.array([0.0, 1.0]), intervals)
 
 
-def next_mesh(edges: Array, knots: Array, times: Array, intervals: int) -> Array:
+def next_mesh(edges: Array, motion: SquaredRate, over: Array, intervals: int) -> Array:
     """About so many intervals of u for a motion that is known.
+
+    What an interval exceeds between its stations falls with the square of its size: knots in proportion to its root
+    make it even.
 
     Args:
         edges: of the pieces.
-        knots: (k,) where the motion's time is known.
-        times: (k,) from 0.
+        motion: of n intervals.
+        over: (n,) what each exceeds of a row that is 1.
         intervals: wanted; more where the pieces are many.
     """
-    return _divided(edges, knots, _BY_TIME * times / times[-1] + (1.0 - _BY_TIME) * knots, intervals)
+    parts = motion.finer(PARTS)
+    times, root = parts.times(), np.repeat(np.sqrt(over), PARTS)
+    filled = (1.0 - _BY_TIME) * parts.knots + _BY_TIME * times / times[-1]
+    if root.any():
+        exceeded = np.concatenate([[0.0], np.cumsum(root)]) / root.sum()
+        filled = (1.0 - _BY_EXCESS) * filled + _BY_EXCESS * exceeded
+    return _divided(edges, parts.knots, filled, intervals)
 
 
 def _divided(edges: Array, knots: Array, filled: Array, intervals: int) -> Array:

@@ -102,7 +102,7 @@ def rows_of(robot: Mechanism, path: Path, limits: Limits, payload: float, knots:
     tool = [d[:, : places(path.pose_names)] for d in derivatives[1:3]]
     return Rows(
         np.concatenate(force, axis=1) if force else np.empty((u.size, 0, len(FORCE))),
-        _jerk(joints, along, limits.of_joints("jerk", count)),
+        _jerk(joints, along, _of_joints(limits, "jerk", joints)),
         _most(joints, along, tool[0], limits),
         _tool(*tool, along, limits.tool_acceleration),
         mean,
@@ -111,6 +111,13 @@ def rows_of(robot: Mechanism, path: Path, limits: Limits, payload: float, knots:
 
 def _columns(*parts: Array | float) -> Array:
     return np.stack(np.broadcast_arrays(*parts), axis=-1)
+
+
+def _of_joints(limits: Limits, name: str, joints: JointMotion) -> Array:
+    """(m,) a limit that is set."""
+    limit = limits.of_joints(name, joints.first.shape[-1])
+    assert limit is not None
+    return limit
 
 
 def _acceleration(joints: JointMotion, along: tuple[Array, ...], limits: Limits) -> Array | None:
@@ -122,16 +129,16 @@ def _acceleration(joints: JointMotion, along: tuple[Array, ...], limits: Limits)
     return _columns(*parts, none, none, none, none)
 
 
-def _jerk(joints: JointMotion, along: tuple[Array, ...], limit: Array | None) -> Array:
+def _jerk(joints: JointMotion, along: tuple[Array, ...], limit: Array) -> Array:
     first, second, third = (v[:, None] for v in along)
     by_w = 3.0 * (joints.first * second + joints.second * first**2)
     by_x = joints.first * third + 3.0 * joints.second * first * second + joints.third * first**3
-    return _columns(joints.first * first, by_w, by_x) / np.asarray(limit)[:, None]
+    return _columns(joints.first * first, by_w, by_x) / limit[:, None]
 
 
 def _most(joints: JointMotion, along: tuple[Array, ...], tangent: Array, limits: Limits) -> Array:
     """(g,) of x; without bound where nothing moves, at both ends."""
-    used = np.abs(joints.first) / limits.of_joints("speed", joints.first.shape[-1])
+    used = np.abs(joints.first) / _of_joints(limits, "speed", joints)
     fastest = used.max(axis=-1)
     if limits.tool_speed is not None:
         fastest = np.maximum(fastest, np.linalg.norm(tangent, axis=-1) / limits.tool_speed)
@@ -168,9 +175,9 @@ def _torque(
 
 def _usual_rate(joints: JointMotion, along: tuple[Array, ...], limits: Limits) -> float:
     """About the rate of a motion that keeps speed and jerk [1/s]."""
-    most = float(np.min((np.abs(joints.first) * along[0][:, None]).max(axis=0) ** -1.0 * limits.speed))
-    jerk = np.abs(_jerk(joints, along, limits.of_joints("jerk", joints.first.shape[-1]))[..., 2])
-    return min(most, float(jerk.max()) ** (-1 / 3))
+    used = np.abs(joints.first) * along[0][:, None] / _of_joints(limits, "speed", joints)
+    jerk = np.abs(_jerk(joints, along, _of_joints(limits, "jerk", joints))[..., 2])
+    return min(1.0 / float(used.max()), float(jerk.max()) ** (-1 / 3))
 
 
 def _turning(first: Array) -> Array:
@@ -205,14 +212,17 @@ def _torque_rows(
     return rows
 
 
-def uniform_rate(rows: Rows) -> float:
-    """The largest constant rate that keeps all the rows; 0 where the weight alone is beyond one."""
+def weight_use(rows: Rows) -> float:
+    """The most that weight and Coulomb friction use of a force; 0 without such a limit."""
+    return float((np.abs(rows.force[..., 3]) + rows.force[..., 5]).max(initial=0.0))
+
+
+def uniform_rate(rows: Rows, most: float = 1.0) -> float:
+    """The largest constant rate at which every row but the means is kept, the forces to `most` instead of 1."""
     _, by_x, by_rate, constant, line, either = np.moveaxis(rows.force, -1, 0)
     least = float(rows.most.min()) ** 0.5
     for sign in (1.0, -1.0):
-        room, linear, square = 1.0 - either - sign * constant, line + sign * by_rate, sign * by_x
-        if room.size and not room.min() > 0.0:
-            return 0.0
+        room, linear, square = most - either - sign * constant, line + sign * by_rate, sign * by_x
         root = linear**2 + 4.0 * square * room
         denominator = linear + np.sqrt(np.maximum(root, 0.0))
         reached = (root >= 0.0) & (denominator > 0.0)
