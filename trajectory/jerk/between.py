@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numba import njit
 
-from trajectory.jerk.barrier import COMPILED, cubic_basis
 from trajectory.jerk.rows import PARTS, Array, Rows
+from trajectory.jerk.stations import COMPILED, cubic_basis
 
 _FINER = 4  # times as many places as stations
 _PLACES = np.linspace(0.0, 1.0, _FINER * PARTS + 1)  # of each interval

@@ -11,12 +11,14 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics import Mechanism
-from trajectory.jerk.barrier import SOLVED, keeping, row_count, search
+from trajectory.errors import TimingFailed
 from trajectory.jerk.between import used
 from trajectory.jerk.mesh import first_mesh, next_mesh, piece_edges
 from trajectory.jerk.motion import SquaredRate
-from trajectory.jerk.refusal import refused
+from trajectory.jerk.refusal import asked_of, refused
 from trajectory.jerk.rows import PARTS, Array, Rows, rows_of, uniform_rate, weight_use
+from trajectory.jerk.search import SOLVED, search
+from trajectory.jerk.stations import keeping, row_count
 from trajectory.limits import Limits
 from trajectory.path import Path
 
@@ -28,13 +30,12 @@ _ROUNDS = 4  # of tightening
 _KEPT = 5e-5  # over a row that is left to the end
 _ROUGHLY, _CLOSELY = 1e-2, 1e-5  # of the time: how far from the least one a search may end
 _FAR, _NEAR, _SAME = 1e-4, 1e-5, 1e-6  # barrier of a search that starts from a slow, a good, its own motion
-_STEPS = 150
+_STEPS = 400
+_LITTLE = 0.1  # share of a motion's squared rate: with less it is a poor start
 _PRESSED = (1e-2, 1.0)  # barriers of further tries
 _HELD = 1.1  # by what more than needed rows are loosened
 _INSIDE = 1e-2  # barrier where a motion far from the rows is sought
-_DRAWS = 40  # of loosened rows
-_DRAWN = 0.999  # of the last ones: less is no progress
-_LEFT = 0.2  # of the room that was found
+_PRICE = 1e3  # of what loosens the forces, in units of the slow motion's time
 _FASTEST = 1e6  # of x in units of the slow motion's, where nothing bounds it
 _SLOWER = 0.98  # of the rate that just keeps every row
 
@@ -68,39 +69,48 @@ class _Duals(NamedTuple):
     means: Array
 
 
+class _Found(NamedTuple):
+    """What a search ended with: a motion in any case, the least one where it converged."""
+
+    answer: Answer
+    duals: _Duals
+    converged: bool
+
+
 def fastest(problem: Problem, intervals: int) -> Answer:
     """The fastest motion on so many intervals, or on as many as it needs.
 
     Raises:
-        TimingFailed: no motion keeps the limits, and why.
+        TimingFailed: no motion keeps the limits, and why; or the search did not converge.
     """
     edges = piece_edges(problem.path)
     asked = max(intervals, _IN_PIECE * (edges.size - 1))
-    first, duals = _first(problem, first_mesh(edges, asked // _COARSE))
-    answer = None
+    found = _first(problem, first_mesh(edges, asked // _COARSE))
     for _ in range(_DOUBLINGS + 1):
-        over = np.maximum(_uses(first.motion, first.rows).max(axis=1) - 1.0, 0.0)
-        knots = next_mesh(edges, first.motion, over, asked)
-        rows = _in_unit(rows_of(*problem, knots), first.unit)
-        start = SquaredRate(knots, first.motion.at(knots))
-        finer = _searched(start, rows, first.unit, duals.means, _NEAR, _CLOSELY)
+        before = found.answer
+        over = np.maximum(_uses(before.motion, before.rows).max(axis=1) - 1.0, 0.0)
+        knots = next_mesh(edges, before.motion, over, asked)
+        rows = _in_unit(rows_of(*problem, knots), before.unit)
+        start = SquaredRate(knots, before.motion.at(knots))
+        finer = _searched(start, rows, before.unit, found.duals.means, _NEAR, _CLOSELY)
         if finer is None:
             break
-        first, duals = finer
-        answer = _tightened(first, duals)
-        if answer.time <= (1.0 + _STANDS) * first.time:
-            break
-        asked *= 2
-    return answer or _tightened(first, duals)
+        found, asked = finer, 2 * asked
+        if found.converged:
+            answer = _tightened(found.answer, found.duals)
+            if answer.time <= (1.0 + _STANDS) * found.answer.time:
+                return answer
+    if not found.converged:
+        raise TimingFailed("jerk", asked_of(*problem), f"the search did not converge on {found.answer.sizes.size} intervals")
+    return _tightened(found.answer, found.duals)
 
 
-def _first(problem: Problem, knots: Array) -> tuple[Answer, _Duals]:
-    """On few knots, from the motion of one rate or, where the drives cannot hold the weight everywhere, of another."""
+def _first(problem: Problem, knots: Array) -> _Found:
+    """On few knots, from the motion of one rate, which the forces may have to be loosened for."""
     rows = rows_of(*problem, knots)
     start = SquaredRate(knots, np.tile([1.0, 0.0], knots.size))
-    rate = uniform_rate(rows, max(1.0, _HELD * weight_use(rows)))
-    unit = 1.0 / (_SLOWER * rate)
-    found = _searched(start, _in_unit(rows, unit), unit, None, _FAR, _ROUGHLY)
+    unit = 1.0 / (_SLOWER * uniform_rate(rows, max(1.0, _HELD * weight_use(rows))))
+    found = _searched(start, _in_unit(rows, unit), unit, np.zeros(rows.mean.shape[1]), _FAR, _ROUGHLY)
     if found is None:
         raise refused(*problem)
     return found
@@ -112,51 +122,49 @@ def _in_unit(rows: Rows, unit: float) -> Rows:
 
 
 def _searched(
-    start: SquaredRate, rows: Rows, unit: float, means: Array | None, barrier: float, tolerance: float
-) -> tuple[Answer, _Duals] | None:
+    start: SquaredRate, rows: Rows, unit: float, means: Array, barrier: float, tolerance: float
+) -> _Found | None:
     """From a motion, slowed down until it keeps every row; None where no motion was found that does."""
-    tight, ones = np.ones((start.knots.size - 1, rows.tight_count)), np.ones(rows.mean.shape[1])
-    sizes, y = np.diff(start.knots), start.values
-    share = keeping(sizes, rows, tight, ones, y)
-    y = share * y if share else _held(start, rows)
+    tight, ones, sizes = _untightened(rows, start)
+    y = _kept(start, rows, tight)
     if y is None:
         return None
     for pressed in (barrier, *_PRESSED):
-        duals = _Duals(_no_duals(sizes.size, rows), np.zeros(ones.size) if means is None else means.copy())
-        found = y.copy()
-        status, _, time, _ = search(sizes, rows, tight, ones, found, *duals, pressed, tolerance, _STEPS)
+        duals, found = _Duals(_no_duals(sizes.size, rows), means.copy()), y.copy()
+        status, _, time, _ = search(sizes, rows, tight, ones, found, *duals, pressed, tolerance, _STEPS, 0.0, 0.0)
         if status == SOLVED:
-            motion = SquaredRate(start.knots, found)
-            return Answer(motion, rows, unit, time, float(_uses(motion, rows).max())), duals
-    return None
+            break
+    motion = SquaredRate(start.knots, found)
+    return _Found(Answer(motion, rows, unit, time, float(_uses(motion, rows).max())), duals, status == SOLVED)
+
+
+def _untightened(rows: Rows, motion: SquaredRate) -> tuple[Array, Array, Array]:
+    """What rows and means are kept to at first, and the sizes of the intervals."""
+    sizes = np.diff(motion.knots)
+    return np.ones((sizes.size, rows.tight_count)), np.ones(rows.mean.shape[1]), sizes
+
+
+def _kept(start: SquaredRate, rows: Rows, tight: Array) -> Array | None:
+    """The start slowed down until it keeps the rows or, where that is not enough, another motion; None without one.
+
+    Where the drives cannot hold the weight, slowing down does not help: the rows of forces are loosened until the
+    start keeps them, and drawn in again. Where it helps too late, a motion found so is the better start.
+    """
+    _, ones, sizes = _untightened(rows, start)
+    share = keeping(sizes, rows, tight, ones, start.values)
+    if share > _LITTLE:
+        return share * start.values
+    y, forces = start.values.copy(), rows.force.shape[1]
+    loose = _HELD * float((_uses(start, rows)[:, :forces] - tight[:, :forces]).max(initial=0.0)) + _HELD - 1.0
+    duals = _Duals(_no_duals(sizes.size, rows), np.zeros(ones.size))
+    status, *_ = search(sizes, rows, tight, ones, y, *duals, _INSIDE, 0.0, _STEPS, loose, _PRICE)
+    if status == SOLVED:
+        return y
+    return share * start.values if share else None
 
 
 def _no_duals(intervals: int, rows: Rows) -> Array:
     return np.zeros((intervals, PARTS + 1, row_count(rows)))
-
-
-def _held(start: SquaredRate, rows: Rows) -> Array | None:
-    """A motion that keeps the rows where slowing down does not help: the drives cannot hold the weight everywhere.
-
-    The forces' rows are loosened until the start keeps them, and drawn in, from one motion well inside them to the
-    next. None where they cannot be drawn in any more.
-    """
-    sizes, y = np.diff(start.knots), start.values
-    ones, tight = np.ones(rows.mean.shape[1]), np.ones((sizes.size, rows.tight_count))
-    forces = rows.force.shape[1]
-    loose = _HELD * float(_uses(start, rows)[:, :forces].max(initial=1.0))
-    for _ in range(_DRAWS):
-        kept = np.where(np.arange(rows.tight_count) < forces, loose, tight)
-        y = y * keeping(sizes, rows, kept, loose**2 * ones, y)
-        duals = _Duals(_no_duals(sizes.size, rows), np.zeros(ones.size))
-        search(sizes, rows, kept, loose**2 * ones, y, *duals, _INSIDE, 1.0, _STEPS)
-        if (share := keeping(sizes, rows, tight, ones, y)) > 0.0:
-            return share * y
-        use = float(_uses(SquaredRate(start.knots, y), rows)[:, :forces].max())
-        if not use < _DRAWN * loose:
-            return None
-        loose = max(1.0, use + _LEFT * (loose - use))
-    return None
 
 
 def _uses(motion: SquaredRate, rows: Rows) -> Array:
@@ -174,8 +182,9 @@ def _tightened(answer: Answer, duals: _Duals) -> Answer:
         if best.use <= 1.0 + _KEPT:
             break
         tight /= np.where(use > 1.0, use * (1.0 + _KEPT / 2), 1.0)
-        y = motion.values * keeping(sizes, rows, tight, means, motion.values)
-        status, _, time, _ = search(sizes, rows, tight, means, y, *duals, _SAME, _CLOSELY, _STEPS)
+        if (y := _kept(motion, rows, tight)) is None:
+            break
+        status, _, time, _ = search(sizes, rows, tight, means, y, *duals, _SAME, _CLOSELY, _STEPS, 0.0, 0.0)
         if status != SOLVED:
             break
         motion = SquaredRate(motion.knots, y)

@@ -15,9 +15,14 @@ _LOOKED_AT = 2001  # arc lengths
 _LIMITS = ("torque", "stall_torque", "rms_torque")
 
 
+def asked_of(robot: Mechanism, path: Path, limits: Limits, payload: float) -> dict[str, object]:  # noqa: ARG001
+    """What an error says was asked for."""
+    return {**limits.as_dict(), "payload": payload, "path": path.as_dict()}
+
+
 def refused(robot: Mechanism, path: Path, limits: Limits, payload: float) -> TimingFailed:
     """The error that names place, joint, limit and torque; the place is where the drive lacks most."""
-    asked = {**limits.as_dict(), "payload": payload, "path": path.as_dict()}
+    asked = asked_of(robot, path, limits, payload)
     s = np.linspace(0.0, path.length, _LOOKED_AT)
     poses, first = path.evaluate(s, 1)
     none = np.zeros_like(poses)
