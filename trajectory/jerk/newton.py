@@ -54,7 +54,7 @@ class Newton(NamedTuple):
         band: of the motion's unknowns alone.
         right: its right-hand side, then the step.
         means: (m or 0, n) the mean squares' gradients.
-        border: (n,) how the loosening of the forces meets the unknowns.
+        border: (n,) how the loosening of the rows meets the unknowns.
         corner: (2,) the loosening's own curvature, and what pulls at it.
     """
 
@@ -89,7 +89,7 @@ def assemble(
     """Fill the equations; the motion's time."""
     to.band[:], to.right[:], to.means[:], to.border[:], to.corner[:], time = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     bend = max(1.0 - (mean_dual * mean_tight).sum(), _LEAST_CURVATURE)
-    local, force, loose, slopes = np.empty(6), np.empty(3), np.empty(2), np.empty((mean_dual.size, 2))
+    local, force, loose, slopes = np.empty(6), np.empty(3), np.empty(3), np.empty((mean_dual.size, 2))
     for k in range(sizes.size):
         for i in range(STATIONS):
             x, g = states[k, i, 0], PARTS * k + i
@@ -97,7 +97,7 @@ def assemble(
             time += share
             local[:], force[:], loose[:] = 0.0, 0.0, 0.0
             local[0], force[0] = 0.75 * bend * share / (x * x), 0.5 * share / x
-            _add_rows(slack[k, i], dual[k, i], gradient[k, i], target, 2 * rows.force.shape[1], local, force, loose, to.corner)
+            _add_rows(slack[k, i], dual[k, i], gradient[k, i], target, local, force, loose, to.corner)
             _row_curvature(x, dual[k, i], rows.force[g], rows.tool[g], local)
             _mean_terms(share, x, states[k, i, 1], rows.mean[g], mean_tight, mean_dual, local, slopes)
             _add_station(bases[k, i], LEAD + 2 * k, local, force, loose, slopes, to)
@@ -110,7 +110,6 @@ def _add_rows(
     dual: Array,
     gradient: Array,
     target: float,
-    forces: int,
     local: Array,
     force: Array,
     loose: Array,
@@ -129,11 +128,12 @@ def _add_rows(
         local[3] += q * a * c
         local[4] += q * b * c
         local[5] += q * c * c
-        if e < forces:
-            loose[0] -= q * a
-            loose[1] -= q * b
-            corner[0] += q
-            corner[1] += pull
+        by_tight = gradient[e, 3]
+        loose[0] -= q * a * by_tight
+        loose[1] -= q * b * by_tight
+        loose[2] -= q * c * by_tight
+        corner[0] += q * by_tight * by_tight
+        corner[1] += pull * by_tight
 
 
 @njit(**COMPILED)
@@ -144,7 +144,7 @@ def _add_station(
     for a in range(4):
         x, w, z = base[0, a], base[1, a], base[2, a]
         to.right[at + a] += force[0] * x + force[1] * w + force[2] * z
-        to.border[at + a] += loose[0] * x + loose[1] * w
+        to.border[at + a] += loose[0] * x + loose[1] * w + loose[2] * z
         by_x = local[0] * x + local[1] * w + local[3] * z
         by_w = local[1] * x + local[2] * w + local[4] * z
         by_z = local[3] * x + local[4] * w + local[5] * z

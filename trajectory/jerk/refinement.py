@@ -27,6 +27,7 @@ _IN_PIECE = 8  # intervals, at least, for each piece of the path on average
 _DOUBLINGS = 6
 _STANDS = 2e-4  # of the time: what tightening may cost on knots that are close enough
 _ROUNDS = 4  # of tightening
+_NEARLY, _OVER = 1e-3, 1e-2  # over a row: what asks for closer knots, and what is no answer
 _KEPT = 5e-5  # over a row that is left to the end
 _ROUGHLY, _CLOSELY = 1e-2, 1e-5  # of the time: how far from the least one a search may end
 _FAR, _NEAR, _SAME = 1e-4, 1e-5, 1e-6  # barrier of a search that starts from a slow, a good, its own motion
@@ -35,6 +36,8 @@ _LITTLE = 0.1  # share of a motion's squared rate: with less it is a poor start
 _PRESSED = (1e-2, 1.0)  # barriers of further tries
 _HELD = 1.1  # by what more than needed rows are loosened
 _INSIDE = 1e-2  # barrier where a motion far from the rows is sought
+_RAISED = 1e-3  # of the largest x, where a motion would stand
+_PLACES = 12  # of each interval, where it is looked at
 _PRICE = 1e3  # of what loosens the forces, in units of the slow motion's time
 _FASTEST = 1e6  # of x in units of the slow motion's, where nothing bounds it
 _SLOWER = 0.98  # of the rate that just keeps every row
@@ -88,7 +91,7 @@ def fastest(problem: Problem, intervals: int) -> Answer:
     found = _first(problem, first_mesh(edges, asked // _COARSE))
     for _ in range(_DOUBLINGS + 1):
         before = found.answer
-        over = np.maximum(_uses(before.motion, before.rows).max(axis=1) - 1.0, 0.0)
+        over = np.clip(_uses(before.motion, before.rows).max(axis=1) - 1.0, 0.0, 1.0)
         knots = next_mesh(edges, before.motion, over, asked)
         rows = _in_unit(rows_of(*problem, knots), before.unit)
         start = SquaredRate(knots, before.motion.at(knots))
@@ -98,11 +101,13 @@ def fastest(problem: Problem, intervals: int) -> Answer:
         found, asked = finer, 2 * asked
         if found.converged:
             answer = _tightened(found.answer, found.duals)
-            if answer.time <= (1.0 + _STANDS) * found.answer.time:
+            if answer.use <= 1.0 + _NEARLY and answer.time <= (1.0 + _STANDS) * found.answer.time:
                 return answer
-    if not found.converged:
-        raise TimingFailed("jerk", asked_of(*problem), f"the search did not converge on {found.answer.sizes.size} intervals")
-    return _tightened(found.answer, found.duals)
+    answer = _tightened(found.answer, found.duals)
+    if not found.converged or answer.use > 1.0 + _OVER:
+        what = f"the search did not settle on {answer.sizes.size} intervals, peak over limit {answer.use:.6g}"
+        raise TimingFailed("jerk", asked_of(*problem), what)
+    return answer
 
 
 def _first(problem: Problem, knots: Array) -> _Found:
@@ -147,20 +152,27 @@ def _untightened(rows: Rows, motion: SquaredRate) -> tuple[Array, Array, Array]:
 def _kept(start: SquaredRate, rows: Rows, tight: Array) -> Array | None:
     """The start slowed down until it keeps the rows or, where that is not enough, another motion; None without one.
 
-    Where the drives cannot hold the weight, slowing down does not help: the rows of forces are loosened until the
-    start keeps them, and drawn in again. Where it helps too late, a motion found so is the better start.
+    Where the drives cannot hold the weight, slowing down does not help: the rows are loosened until the start keeps
+    them, and drawn in again. Where it helps too late, a motion found so is the better start.
     """
     _, ones, sizes = _untightened(rows, start)
     share = keeping(sizes, rows, tight, ones, start.values)
     if share > _LITTLE:
         return share * start.values
-    y, forces = start.values.copy(), rows.force.shape[1]
-    loose = _HELD * float((_uses(start, rows)[:, :forces] - tight[:, :forces]).max(initial=0.0)) + _HELD - 1.0
-    duals = _Duals(_no_duals(sizes.size, rows), np.zeros(ones.size))
+    moving = _never_at_rest(start)
+    loose = _HELD * float((_uses(moving, rows) - tight).max()) + _HELD - 1.0
+    y, duals = moving.values.copy(), _Duals(_no_duals(sizes.size, rows), np.zeros(ones.size))
     status, *_ = search(sizes, rows, tight, ones, y, *duals, _INSIDE, 0.0, _STEPS, loose, _PRICE)
     if status == SOLVED:
         return y
     return share * start.values if share else None
+
+
+def _never_at_rest(motion: SquaredRate) -> SquaredRate:
+    """With x raised alike everywhere until it is above 0 between the knots too."""
+    x = motion.finer(_PLACES).values[::2]
+    raised = 0.0 if x.min() > 0.0 else float(_RAISED * x.max() - 2.0 * x.min())
+    return motion._replace(values=motion.values + np.tile([raised, 0.0], motion.knots.size))
 
 
 def _no_duals(intervals: int, rows: Rows) -> Array:

@@ -42,9 +42,9 @@ def _to_the_edge(value: float, change: float, size: float) -> float:
 
 @njit(**COMPILED)
 def _dual_step(
-    moved: Array, states: Array, slack: Array, dual: Array, gradient: Array, target: float, loosened: float, forces: int, change: Array
+    moved: Array, states: Array, slack: Array, dual: Array, gradient: Array, target: float, loosened: float, change: Array
 ) -> tuple[float, float]:
-    """The change of the duals, and how far x and duals can go along their changes, rows of forces being loosened."""
+    """The change of the duals, and how far x and duals can go along their changes, the rows being loosened."""
     primal, of_dual = 1.0, 1.0
     for k in range(slack.shape[0]):
         for i in range(STATIONS):
@@ -53,8 +53,7 @@ def _dual_step(
             for e in range(slack.shape[2]):
                 left, d = slack[k, i, e], dual[k, i, e]
                 fall = -(gradient[k, i, e, 0] * x + gradient[k, i, e, 1] * w + gradient[k, i, e, 2] * z)
-                if e < forces:
-                    fall += loosened
+                fall += gradient[k, i, e, 3] * loosened
                 change[k, i, e] = (target - d * fall) / left - d
                 primal = _to_the_edge(left, fall, primal)
                 of_dual = _to_the_edge(d, change[k, i, e], of_dual)
@@ -88,21 +87,20 @@ def search(
         barrier: product of each row's slack and dual at the start.
         tolerance: of the time, relative.
         most_steps: before it gives up.
-        loose: what is added to all that forces are kept to.
+        loose: what is added to all that the rows are kept to.
         price: of that, in units of the time; then it is lowered too, and the search ends where none of it is left.
             With 0 it stays.
 
     Returns:
         How it ended, SOLVED or another, after how many steps; the time, and how far above the least it is at most.
     """
-    n, count, forces = sizes.size, rows.mean.shape[1], rows.force.shape[1]
+    n, count = sizes.size, rows.mean.shape[1]
     shape = (n, STATIONS, row_count(rows))
     bases, slack, next_slack = all_bases(sizes), np.empty(shape), np.empty(shape)
     states, tried, moved = np.empty((n, STATIONS, 3)), np.empty((n, STATIONS, 3)), np.empty((n, STATIONS, 3))
-    gradient, change, equations = np.empty((*shape, 3)), np.empty(shape), room_for(y.size, count)
+    gradient, change, equations = np.empty((*shape, 4)), np.empty(shape), room_for(y.size, count)
     mean_slack, next_mean, mean_change = np.empty(count), np.empty(count), np.empty(count)
-    kept = tight.copy()
-    kept[:, :forces] += loose
+    kept = tight + loose
     states_of(bases, y, states)
     if not (slacks_of(states, rows, kept, slack) > 0.0 and means_of(states, sizes, rows, mean_tight, mean_slack) > 0.0):
         return OUTSIDE, 0, math.nan, math.nan
@@ -121,7 +119,7 @@ def search(
         if not found:
             return SINGULAR, step, time, gap
         states_of(bases, equations.right[LEAD:], moved)
-        primal, of_dual = _dual_step(moved, states, slack, dual, gradient, target, looser, 2 * forces, change)
+        primal, of_dual = _dual_step(moved, states, slack, dual, gradient, target, looser, change)
         for j in range(count):
             fall = -(equations.means[j] * equations.right).sum()
             mean_change[j] = (target - mean_dual[j] * fall) / mean_slack[j] - mean_dual[j]
@@ -130,7 +128,7 @@ def search(
         inside = False
         for _ in range(_TRIES):
             tried[:] = states + primal * moved
-            kept[:, :forces] = tight[:, :forces] + (loose + primal * looser)
+            kept[:] = tight + (loose + primal * looser)
             inside = (
                 slacks_of(tried, rows, kept, next_slack) > 0.0
                 and means_of(tried, sizes, rows, mean_tight, next_mean) > 0.0

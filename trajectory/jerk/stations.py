@@ -101,14 +101,16 @@ def means_of(states: Array, sizes: Array, rows: Rows, tight: Array, out: Array) 
 
 @njit(**COMPILED)
 def gradients_of(states: Array, rows: Rows, tight: Array, out: Array) -> None:
-    """Of each row's use by x, w and z."""
+    """Of each row's use by x, w and z; and of what is left by what the row is kept to."""
     forces, joints, tools = rows.force.shape[1], rows.jerk.shape[1], rows.tool.shape[1]
     out[:] = 0.0
     for k in range(states.shape[0]):
         for i in range(STATIONS):
             g = PARTS * k + i
             x, w = states[k, i, 0], states[k, i, 1]
-            half, steep, of = 0.5 / math.sqrt(x), 0.5 / (x * math.sqrt(x)), out[k, i]
+            rate, of = 1.0 / math.sqrt(x), out[k, i]
+            half, steep = 0.5 * rate, 0.5 * rate / x
+            of[:, 3] = 1.0
             for j in range(forces):
                 c = rows.force[g, j]
                 of[2 * j, 0], of[2 * j, 1] = c[1] + (c[4] + c[2]) * half, c[0]
@@ -116,10 +118,10 @@ def gradients_of(states: Array, rows: Rows, tight: Array, out: Array) -> None:
             at = 2 * forces
             for j in range(joints):
                 c, edge = rows.jerk[g, j], tight[k, forces + j] * steep
-                of[at, 0], of[at, 1], of[at, 2] = c[2] + edge, c[1], c[0]
-                of[at + 1, 0], of[at + 1, 1], of[at + 1, 2] = edge - c[2], -c[1], -c[0]
+                of[at, 0], of[at, 1], of[at, 2], of[at, 3] = c[2] + edge, c[1], c[0], rate
+                of[at + 1, 0], of[at + 1, 1], of[at + 1, 2], of[at + 1, 3] = edge - c[2], -c[1], -c[0], rate
                 at += 2
-            of[at, 0] = 1.0
+            of[at, 0], of[at, 3] = 1.0, rows.most[g]
             for j in range(tools):
                 c = rows.tool[g, j]
                 of[at + 1, 0], of[at + 1, 1] = c[1] * w + 2.0 * c[2] * x, 2.0 * c[0] * w + c[1] * x
