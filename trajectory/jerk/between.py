@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from trajectory.jerk.rows import PARTS, Array, Rows
-from trajectory.jerk.stations import COMPILED, cubic_basis
+from trajectory.jerk.stations import compiled, cubic_basis
 
 _FINER = 4  # times as many places as stations
 _PLACES = np.linspace(0.0, 1.0, _FINER * PARTS + 1)  # of each interval
@@ -18,7 +17,7 @@ _LAGRANGE = np.array(
 )  # from a coefficient at the stations to the cubic through it
 
 
-@njit(**COMPILED)
+@compiled
 def used(sizes: Array, values: Array, rows: Rows, out: Array) -> None:
     """The most that each interval uses of each row, by the parabola through the highest of many places.
 
@@ -43,7 +42,7 @@ def used(sizes: Array, values: Array, rows: Rows, out: Array) -> None:
             out[k, j] = _peak(found[:, j])
 
 
-@njit(**COMPILED)
+@compiled
 def _used_at(x: float, w: float, z: float, first: int, shares: Array, rows: Rows, out: Array) -> None:
     """Of coefficients that are shares of those at the stations from `first` on."""
     out[:] = 0.0
@@ -75,7 +74,7 @@ def _used_at(x: float, w: float, z: float, first: int, shares: Array, rows: Rows
     out[at] = x * max(inverse, 0.0)
 
 
-@njit(**COMPILED)
+@compiled
 def _peak(values: Array) -> float:
     i = int(np.argmax(values))
     if i in (0, values.size - 1):

@@ -6,16 +6,15 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from trajectory.jerk.banded import LEAD, factorise, solve_factorised
 from trajectory.jerk.rows import PARTS, Array, Rows
-from trajectory.jerk.stations import COMPILED, STATIONS, WEIGHTS
+from trajectory.jerk.stations import STATIONS, WEIGHTS, compiled
 
 _LEAST_CURVATURE = 0.1  # of the time's, which a mean square torque can use up
 
 
-@njit(**COMPILED)
+@compiled
 def _row_curvature(x: float, duals: Array, force: Array, tool: Array, local: Array) -> None:
     """Of the rows whose curvature is positive: sqrt(x) that helps, and the tool's acceleration."""
     cube = 0.25 / (x * math.sqrt(x))
@@ -30,7 +29,7 @@ def _row_curvature(x: float, duals: Array, force: Array, tool: Array, local: Arr
         local[2] += 2.0 * tool[j, 0] * dual
 
 
-@njit(**COMPILED)
+@compiled
 def _mean_terms(
     share: float, x: float, w: float, mean: Array, tight: Array, duals: Array, local: Array, slopes: Array
 ) -> None:
@@ -65,14 +64,14 @@ class Newton(NamedTuple):
     corner: Array
 
 
-@njit(**COMPILED)
+@compiled
 def room_for(unknowns: int, means: int) -> Newton:
     """Equations to fill."""
     n = unknowns + LEAD
     return Newton(np.empty((n, 4)), np.empty(n), np.empty((means, n)), np.empty(n), np.empty(2))
 
 
-@njit(**COMPILED)
+@compiled
 def assemble(
     states: Array,
     bases: Array,
@@ -104,7 +103,7 @@ def assemble(
     return time
 
 
-@njit(**COMPILED)
+@compiled
 def _add_rows(
     slack: Array,
     dual: Array,
@@ -136,10 +135,8 @@ def _add_rows(
         corner[1] += pull * by_tight
 
 
-@njit(**COMPILED)
-def _add_station(
-    base: Array, at: int, local: Array, force: Array, loose: Array, slopes: Array, to: Newton
-) -> None:
+@compiled
+def _add_station(base: Array, at: int, local: Array, force: Array, loose: Array, slopes: Array, to: Newton) -> None:
     """From x, w and z of a station to the four unknowns of its interval."""
     for a in range(4):
         x, w, z = base[0, a], base[1, a], base[2, a]
@@ -154,7 +151,7 @@ def _add_station(
             to.means[j, at + a] += slopes[j, 0] * x + slopes[j, 1] * w
 
 
-@njit(**COMPILED)
+@compiled
 def solve_step(of: Newton, mean_slack: Array, mean_dual: Array, target: float, price: float) -> tuple[bool, float]:
     """The step in place of the right-hand side.
 
@@ -183,7 +180,7 @@ def solve_step(of: Newton, mean_slack: Array, mean_dual: Array, target: float, p
     return True, looser
 
 
-@njit(**COMPILED)
+@compiled
 def _solve_with_ranks(of: Newton, apart: Array, small: Array, x: Array) -> None:
     """In place, by the factor and what each mean square torque adds to it (Woodbury)."""
     solve_factorised(of.band, x)

@@ -181,7 +181,7 @@ def _usual_rate(joints: JointMotion, along: tuple[Array, ...], limits: Limits) -
 
 
 def _turning(first: Array) -> Array:
-    """(g, m) whether the joint turns back in an interval that the station belongs to: Coulomb friction may be either."""
+    """(g, m) whether the joint turns back in an interval of the station: its Coulomb friction may be either."""
     sign = np.sign(first)
     starts = sign[:-1:PARTS]
     apart = np.zeros(starts.shape, dtype=bool)

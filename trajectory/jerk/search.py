@@ -12,15 +12,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from trajectory.jerk.banded import LEAD
 from trajectory.jerk.newton import assemble, room_for, solve_step
 from trajectory.jerk.rows import Array, Rows
 from trajectory.jerk.stations import (
-    COMPILED,
     STATIONS,
     all_bases,
+    compiled,
     gradients_of,
     means_of,
     row_count,
@@ -34,15 +33,22 @@ _BACK = 0.7  # of a step that broke a row
 _TRIES = 40
 
 
-@njit(**COMPILED)
+@compiled
 def _to_the_edge(value: float, change: float, size: float) -> float:
     """The share of a change, at most `size`, that leaves a little of a positive value."""
     return -_TO_EDGE * value / change if -change * size > _TO_EDGE * value else size
 
 
-@njit(**COMPILED)
+@compiled
 def _dual_step(
-    moved: Array, states: Array, slack: Array, dual: Array, gradient: Array, target: float, loosened: float, change: Array
+    moved: Array,
+    states: Array,
+    slack: Array,
+    dual: Array,
+    gradient: Array,
+    target: float,
+    loosened: float,
+    change: Array,
 ) -> tuple[float, float]:
     """The change of the duals, and how far x and duals can go along their changes, the rows being loosened."""
     primal, of_dual = 1.0, 1.0
@@ -60,7 +66,7 @@ def _dual_step(
     return primal, of_dual
 
 
-@njit(**COMPILED)
+@compiled
 def search(
     sizes: Array,
     rows: Rows,
@@ -110,9 +116,7 @@ def search(
         gap = (slack * dual).sum() + (mean_slack * mean_dual).sum()
         target = centring * gap / (slack.size + count)
         gradients_of(states, rows, kept, gradient)
-        time = assemble(
-            states, bases, sizes, rows, slack, dual, gradient, mean_tight, mean_dual, target, equations
-        )
+        time = assemble(states, bases, sizes, rows, slack, dual, gradient, mean_tight, mean_dual, target, equations)
         if (step and gap <= tolerance * time and not price) or (price and loose < 0.0):
             return SOLVED, step, time, gap
         found, looser = solve_step(equations, mean_slack, mean_dual, target, price)

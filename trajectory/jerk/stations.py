@@ -11,11 +11,11 @@ from trajectory.jerk.rows import PARTS, Array, Rows
 
 STATIONS = PARTS + 1  # of each interval
 WEIGHTS = np.array([1.0, 3.0, 3.0, 1.0]) / 8.0  # of their integral: Simpson's 3/8
-COMPILED = {"cache": True, "error_model": "numpy", "fastmath": {"contract", "reassoc", "nsz", "arcp"}}
+compiled = njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc", "nsz", "arcp"})
 _TRIES = 40
 
 
-@njit(**COMPILED)
+@compiled
 def cubic_basis(at: float, size: float, out: Array) -> None:
     """(3, 4): x, w and z at a share of an interval of that size, by x and w at its start and at its end."""
     square, cube = at * at, at * at * at
@@ -29,7 +29,7 @@ def cubic_basis(at: float, size: float, out: Array) -> None:
     out[2, 1], out[2, 3] = (6.0 * at - 4.0) / size, (6.0 * at - 2.0) / size
 
 
-@njit(**COMPILED)
+@compiled
 def all_bases(sizes: Array) -> Array:
     found = np.empty((sizes.size, STATIONS, 3, 4))
     for k in range(sizes.size):
@@ -38,7 +38,7 @@ def all_bases(sizes: Array) -> Array:
     return found
 
 
-@njit(**COMPILED)
+@compiled
 def states_of(bases: Array, y: Array, out: Array) -> None:
     """x, w and z at the stations."""
     for k in range(bases.shape[0]):
@@ -49,7 +49,7 @@ def states_of(bases: Array, y: Array, out: Array) -> None:
                 out[k, i, e] = base[e, 0] * a + base[e, 1] * b + base[e, 2] * c + base[e, 3] * d
 
 
-@njit(**COMPILED)
+@compiled
 def slacks_of(states: Array, rows: Rows, tight: Array, out: Array) -> float:
     """What is left of each row; the least of it, of x too, over all stations."""
     least = math.inf
@@ -81,7 +81,7 @@ def slacks_of(states: Array, rows: Rows, tight: Array, out: Array) -> float:
     return least
 
 
-@njit(**COMPILED)
+@compiled
 def means_of(states: Array, sizes: Array, rows: Rows, tight: Array, out: Array) -> float:
     """What is left of each mean square torque, integrated; the least of them."""
     out[:] = 0.0
@@ -99,7 +99,7 @@ def means_of(states: Array, sizes: Array, rows: Rows, tight: Array, out: Array) 
     return least
 
 
-@njit(**COMPILED)
+@compiled
 def gradients_of(states: Array, rows: Rows, tight: Array, out: Array) -> None:
     """Of each row's use by x, w and z; and of what is left by what the row is kept to."""
     forces, joints, tools = rows.force.shape[1], rows.jerk.shape[1], rows.tool.shape[1]
@@ -127,7 +127,7 @@ def gradients_of(states: Array, rows: Rows, tight: Array, out: Array) -> None:
                 of[at + 1, 0], of[at + 1, 1] = c[1] * w + 2.0 * c[2] * x, 2.0 * c[0] * w + c[1] * x
 
 
-@njit(**COMPILED)
+@compiled
 def keeping(sizes: Array, rows: Rows, tight: Array, mean_tight: Array, y: Array) -> float:
     """The share of a motion's squared rate, below 1, that keeps all the rows strictly; 0 where none is found."""
     bases, states = all_bases(sizes), np.empty((sizes.size, STATIONS, 3))
@@ -142,9 +142,7 @@ def keeping(sizes: Array, rows: Rows, tight: Array, mean_tight: Array, y: Array)
     return 0.0
 
 
-@njit(**COMPILED)
+@compiled
 def row_count(rows: Rows) -> int:
     """At each station."""
     return 2 * rows.force.shape[1] + 2 * rows.jerk.shape[1] + 1 + rows.tool.shape[1]
-
-
