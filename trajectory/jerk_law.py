@@ -19,12 +19,13 @@ from trajectory.jerk_numbers import Numbers, Scale, numbers_of
 from trajectory.jerk_problem import Row, Shape, Variables, solver_of
 from trajectory.jerk_start import Start, denser_start, polynomial_start, start_of
 from trajectory.limits import Limits
-from trajectory.motion import motion_of
-from trajectory.path import Array, Path, require_poses_of, require_smooth
+from trajectory.motion import motion_of, pose_motion
+from trajectory.path import Array, Path, require_poses_of
+from trajectory.sampling import integrals
+from trajectory.smoothness import require_smooth
 from trajectory.timed import TimedPath
 from trajectory.timing import TimeLaw
 from trajectory.usage import uses
-from trajectory.verification import integrals
 
 INTERVALS = 200
 LEAST_INTERVALS = 20
@@ -63,7 +64,7 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
         raise InvalidValue("Limits jerk for the jerk law", None, "a limit; without one the toppra law is the fastest")
     grid = np.linspace(0.0, path.length, _CHECKED + 1)
     require_poses_of(robot, path)
-    require_smooth(path, grid)
+    require_smooth(path)
     robot.require_reachable(path.evaluate(grid, 0)[0])
     require_possible(robot, path, limits, payload, grid)
     asked = {**limits.as_dict(), "payload": payload, "intervals": intervals, "path": path.as_dict()}
@@ -167,8 +168,8 @@ class _Problem:
 
     def excess(self, timed: TimedPath) -> Excess:
         """What a law uses beyond its limits, between the stations too."""
-        times, tool = timed.within(_SAMPLES)
-        motion = motion_of(self.robot, tool, self.payload)
+        times, along = timed.law.within(_SAMPLES)
+        motion = motion_of(self.robot, pose_motion(self.path, along), self.payload)
         found = {
             name: np.maximum(use.ratio.max(axis=(1, 2)), 1.0)
             for name, use in uses(self.robot, motion, self.limits).items()

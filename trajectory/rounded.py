@@ -29,7 +29,7 @@ from trajectory.corner import (
 )
 from trajectory.errors import InvalidPath
 from trajectory.knots import interval_of
-from trajectory.path import Array, Path, PathBox, checked_arc_length, pieces, places
+from trajectory.path import Array, PathBox, checked_arc_length, places
 
 _STRAIGHT = 1e-12  # rad: a turn that is rounding
 _CUSP = math.pi - 1e-6  # rad: from here on a turn is a reversal
@@ -69,9 +69,10 @@ class RoundedPath:
         """As `Path.knots`: the ends of legs and corners, and where an angle is given."""
         return tuple(np.unique(np.concatenate([self._layout.edges, *(at for at, _ in self._angles)])).tolist())
 
-    def split(self) -> tuple[Path, ...]:
-        """Itself, or its parts between the corners without a blend."""
-        return pieces(self, self._layout.stops)
+    @property
+    def stops(self) -> tuple[float, ...]:
+        """As `Path.stops`: the corners without a blend."""
+        return self._layout.stops
 
     def as_dict(self) -> dict[str, object]:
         """The fields, as lists."""

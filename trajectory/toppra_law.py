@@ -31,7 +31,8 @@ from kinematics.motion import actuator_motion
 from trajectory.at_rest import require_possible
 from trajectory.errors import TimingFailed
 from trajectory.limits import Limits
-from trajectory.path import Array, Path, places, require_poses_of, require_smooth
+from trajectory.path import Array, Path, places, require_poses_of
+from trajectory.smoothness import require_smooth
 from trajectory.timed import TimedPath
 from trajectory.timing import TimeLaw
 
@@ -78,7 +79,7 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     if not (math.isfinite(payload) and payload >= 0.0):
         raise InvalidValue("payload", payload, "a finite mass >= 0 kg")
     grid = np.linspace(0.0, 1.0, intervals + 1)
-    require_smooth(path, path.length * grid)
+    require_smooth(path)
     derivatives = [d * path.length**k for k, d in enumerate(path.evaluate(path.length * grid, 2))]
     robot.require_reachable(derivatives[0])
     require_possible(robot, path, limits, payload, path.length * grid)
