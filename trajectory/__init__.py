@@ -1,6 +1,6 @@
 """Paths, actuator limits, timing laws, verification and set-points.
 
-The timing laws and the moves load their solvers, toppra, IPOPT and ruckig, at first use.
+The timing laws and the moves load their solvers, IPOPT and ruckig, at first use.
 """
 
 from __future__ import annotations
