@@ -14,6 +14,7 @@ import numpy as np
 
 from trajectory.path import Array
 
+_KEPT = 1e-10  # of a row's bound: a row that is exceeded by less is kept
 _LINE = 1e-12  # relative: what rounding may put a point beyond a line
 
 
@@ -44,9 +45,9 @@ def _fastest(lengths, a, b, c, friction, highest, x):  # type: ignore[no-untyped
     for k in range(last - 1, -1, -1):
         _fill(lengths[k], a, b, c, friction, k, g, h, r)
         step, most = 2.0 * lengths[k], max(highest[k], x[k + 1])
-        steepest = most / step
-        g[count], h[count], r[count] = 1.0 / most, step / most, x[k + 1] / most
-        g[count + 1], h[count + 1], r[count + 1] = -g[count], -h[count], -least[k + 1] / most
+        steepest, unit = most / step, x[k + 1] if x[k + 1] > 0.0 else most
+        g[count], h[count], r[count] = 1.0 / unit, step / unit, x[k + 1] / unit
+        g[count + 1], h[count + 1], r[count + 1] = -g[count], -h[count], -least[k + 1] / unit
         x[k] = _largest(g, h, r, 0.0, highest[k], steepest)
         if not x[k] >= 0.0:
             return k
@@ -104,7 +105,7 @@ def _largest(g, h, r, low, high, most):  # type: ignore[no-untyped-def]
     """
     x, u = high, 0.0
     for i in range(g.size):
-        if g[i] * x + h[i] * u <= r[i]:
+        if g[i] * x + h[i] * u <= r[i] + _KEPT:
             continue
         if abs(h[i]) * most >= abs(g[i]) * max(abs(low), abs(high)):
             first, last = _on_line(g, h, r, i, low, high, -most, most)

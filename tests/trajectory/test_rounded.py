@@ -183,7 +183,10 @@ def test_any_path_stays_within_the_bounds_that_enclose_it(seed: int, count: int,
 @pytest.mark.parametrize(
     ("poses", "blends", "pose", "field"),
     [
-        (((0, 0, 0, 0), (0, 0, 0, 1)), (), 2, "place"),
+        (((0, 0, 0, 1), (0, 0, 0, 1)), (), 2, "place"),
+        (((1, 0, 0, 0), (1, 0, 1e-14, 1e-14)), (), 2, "place"),
+        (((0, 0, 0, 0), (0, 0, 1, None), (0, 0, 1, 1)), (0,), 2, "theta"),
+        (((0, 0, 0, 0), (0, 0, 1, 0), (0, 0, 1, 1)), (0.1,), 2, "blend"),
         (((0, 0, 0, None), (0, 0, 1, 1)), (), 1, "theta"),
         (((0, 0, 0, 0), (0, None, 1, 1), (1, 1, 1, 1)), (0.1,), 2, "y"),
         (((0, 0, 0, 0), (0, 0, math.nan, 1)), (), 2, "z"),
