@@ -10,12 +10,13 @@ from trajectory.jerk.motion import law_in_time
 from trajectory.jerk.refinement import Answer, Problem, fastest
 from trajectory.jerk.rows import PARTS, Array, smoothstep
 from trajectory.limits import Limits
-from trajectory.path import Path, require_poses_of, require_smooth
+from trajectory.path import Path, require_poses_of
+from trajectory.smoothness import require_smooth
 from trajectory.timed import TimedPath
 
 INTERVALS = 200
 LEAST_INTERVALS = 20
-_CHECKED = 2000  # intervals of arc length on which the path must be smooth and within reach
+_CHECKED = 2000  # intervals of arc length between which the joints' positions are looked at
 
 
 def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = INTERVALS) -> TimedPath:
@@ -38,11 +39,9 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
         raise InvalidValue("intervals of the jerk law", intervals, f"at least {LEAST_INTERVALS}")
     if limits.jerk is None:
         raise InvalidValue("Limits jerk for the jerk law", None, "a limit; without one the toppra law is the fastest")
-    grid = np.linspace(0.0, path.length, _CHECKED + 1)
     require_poses_of(robot, path)
-    require_smooth(path, grid)
-    robot.require_reachable(path.evaluate(grid, 0)[0])
-    require_possible(robot, path, limits, payload, grid)
+    require_smooth(path)
+    require_possible(robot, path, limits, payload, np.linspace(0.0, path.length, _CHECKED + 1))
     return timed(path, fastest(Problem(robot, path, limits, payload), intervals))
 
 

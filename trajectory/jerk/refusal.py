@@ -35,7 +35,7 @@ def refused(robot: Mechanism, path: Path, limits: Limits, payload: float) -> Tim
                 continue
             k, joint = np.unravel_index(int((np.abs(torque) / limit).argmax()), torque.shape)
             if abs(torque[k, joint]) >= limit[joint]:
-                place = float(s[k]), poses[k].tolist()
-                drive = robot.actuator_names[joint], float(torque[k, joint]), float(limit[joint])
-                return WeightBeyondDrive("jerk", asked, name, what, *place, *drive, robot.actuator_units[joint])
+                at, pose, drive = float(s[k]), poses[k].tolist(), robot.actuator_names[joint]
+                found, unit = float(torque[k, joint]), robot.actuator_units[joint]
+                return WeightBeyondDrive("jerk", asked, name, what, at, pose, drive, found, float(limit[joint]), unit)
     return TimingFailed("jerk", asked, "no solution: the search ended without a motion, although the drives can rest")

@@ -84,12 +84,18 @@ def stations(knots: Array) -> Array:
 
 
 def rows_of(robot: Mechanism, path: Path, limits: Limits, payload: float, knots: Array) -> Rows:
-    """The rows in SI units, at the stations of intervals between knots (n + 1,) of u."""
+    """The rows in SI units, at the stations of intervals between knots (n + 1,) of u.
+
+    Raises:
+        UnreachablePose: a limb cannot reach a station.
+    """
     u = stations(knots)
     share, *slopes = smoothstep(u)
     along = tuple(path.length * v for v in slopes)
     derivatives = path.evaluate(np.clip(path.length * share, 0.0, path.length), 3)
     joints = actuator_motion(robot, *derivatives)
+    if not np.isfinite(joints.third).all():
+        robot.require_reachable(derivatives[0])
     count = joints.first.shape[-1]
     torque = _torque(robot, payload, derivatives, along, joints, limits)
     force = [] if (row := _acceleration(joints, along, limits)) is None else [row]
@@ -99,12 +105,12 @@ def rows_of(robot: Mechanism, path: Path, limits: Limits, payload: float, knots:
         force += _torque_rows(robot, limits, torque, joints, along, both)
         if (rms := limits.of_joints("rms_torque", count)) is not None:
             mean = torque / rms[:, None]
-    tool = [d[:, : places(path.pose_names)] for d in derivatives[1:3]]
+    tangent, bend = (d[:, : places(path.pose_names)] for d in derivatives[1:3])
     return Rows(
         np.concatenate(force, axis=1) if force else np.empty((u.size, 0, len(FORCE))),
         _jerk(joints, along, _of_joints(limits, "jerk", joints)),
-        _most(joints, along, tool[0], limits),
-        _tool(*tool, along, limits.tool_acceleration),
+        _most(joints, along, tangent, limits),
+        _tool(tangent, bend, along, limits.tool_acceleration),
         mean,
     )
 
