@@ -194,7 +194,7 @@ def timing_of(study: Study) -> tuple[Timing, tuple[str, ...]]:
         from trajectory.free_law import free_motion
 
         return partial(free_motion, within=pose_bounds_of(study)), ()
-    from trajectory.jerk_law import jerk_limited
+    from trajectory.jerk import jerk_limited
 
     return jerk_limited, ()
 

@@ -253,7 +253,7 @@ def test_where_so_many_knots_have_no_answer_it_is_one_on_fewer(
 
     monkeypatch.setattr(_Problem, "solved", fails_on_many)
     fewer = repair(robot, jerk_limited(robot, path, SMOOTH, 1.0), SMOOTH, 1.0)
-    assert fewer.motion.times.size == 101
+    assert fewer.motion.law.times.size == 101
     assert mended.motion.duration < fewer.motion.duration < 1.002 * mended.motion.duration
 
 

@@ -24,7 +24,7 @@ from trajectory import (
     repair,
     verify,
 )
-from trajectory.verification import sampling
+from trajectory.sampling import parts_of
 
 CLOSE = 5e-5  # of the least stretch, which a proof between the samples may add
 
@@ -178,7 +178,7 @@ def test_one_nan_anywhere_fails(robot: Heli4, repaired: Repaired, monkeypatch: p
 
     def spoiled(self: AdeptCycle, s: np.ndarray, order: int = 3) -> tuple[np.ndarray, ...]:
         derivatives = exact(self, s, order)
-        if np.ndim(s) == 2:
+        if np.ndim(s) == 2 and len(s) > 700:
             derivatives[2][700, 3, 3] = np.nan
         return derivatives
 
@@ -217,7 +217,8 @@ def test_derivatives_that_are_not_the_path_s_fail(
 
 
 def test_a_law_of_few_intervals_is_sampled_as_densely(smooth: TimedPath) -> None:
-    steps = np.diff(smooth.law.within(sampling(smooth))[1].position, axis=1)
+    (poses, *_) = parts_of(smooth).tool(smooth)
+    steps = np.linalg.norm(np.diff(poses[..., :3], axis=1), axis=-1)
     assert steps.max() < 2.5e-4 * smooth.path.length
 
 
