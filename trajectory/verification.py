@@ -34,7 +34,7 @@ _TOLERANCES = {  # SI, the closure in m^2; the two integrals are relative
     "start speed": 1e-9,
     "end speed": 1e-9,
     "closure": 1e-9,
-    "forward": 1e-6,
+    "change of assembly mode": 0.5,
     "kink of the path": 1e-7,
     "integral of acceleration": 1e-4,
     "integral of speed": 1e-6,
@@ -65,8 +65,8 @@ class Verification:
         duration: of the motion [s].
         peaks: of joint speed, joint acceleration, torque, tool speed, tool acceleration, joint jerk, rms torque; of
             joint position and torque at speed where they are limited.
-        residuals: of end poses, end speeds, loop closure and forward model, SI; of the joints' integrals, over the
-            largest speed and over the way of the joints.
+        residuals: of end poses, end speeds and loop closure, SI, and of the assembly mode; of the joints' integrals,
+            over the largest speed and over the way of the joints.
         reach: the worst limb's margin [m]; negative or NaN fails.
         rms_torque: (m,) over the whole duration [N m or N].
         rms_over_peak: (m,) each joint's RMS torque over its own peak; 0 where it bears none.
@@ -203,10 +203,6 @@ def _jump(times: Array, acceleration: Array, first: Array) -> tuple[float, float
 
 def _residuals(robot: Mechanism, timed: TimedMotion, motion: Motion, before: PoseMotion) -> dict[str, float]:
     pose, joints = motion.tool.pose, from_actuators(robot, motion.joints.position)
-    knots, knot_joints = pose[:, 0], joints[:, 0]
-    by_forward = robot.forward(knot_joints) - knots
-    turns = list(robot.rotations)
-    by_forward[..., turns] = np.remainder(by_forward[..., turns] + math.pi, 2 * math.pi) - math.pi
     first = timed.at(np.array(0.0))
     return {
         "start pose": _largest(first.pose - before.pose),
@@ -215,8 +211,19 @@ def _residuals(robot: Mechanism, timed: TimedMotion, motion: Motion, before: Pos
         "end speed": _largest(motion.tool.velocity[-1, -1]),
         "kink of the path": timed.kink,
         "closure": _largest(robot.closure_residual(pose, joints)),
-        "forward": _largest(by_forward),
+        "change of assembly mode": _changes(robot.jacobians(pose[:, 0])[1]),
     }
+
+
+def _changes(j_x: Array) -> float:
+    """How many of J_x (k, m, n) lie on another side of the singularities than the first; 0 with redundant joints.
+
+    A pose that moves continuously cannot change its assembly mode without passing a singularity.
+    """
+    if j_x.shape[-2] != j_x.shape[-1]:
+        return 0.0
+    sides = np.sign(np.linalg.det(j_x[np.isfinite(j_x).all(axis=(-2, -1))]))
+    return float(np.count_nonzero(sides != sides[:1]))
 
 
 def _integral_residuals(times: Array, motion: Motion) -> dict[str, float]:

@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from trajectory.jerk_law import _Problem
+from trajectory.jerk_start import Start
 
 from kinematics import Heli4, InvalidValue, Mechanism, Peppermill, Redundant3T1R, UnreachablePose
 from kinematics.dynamics import inverse_dynamics
@@ -26,8 +28,6 @@ from trajectory import (
     there_and_back,
     time_optimal,
 )
-from trajectory.jerk_law import _Problem
-from trajectory.jerk_start import Start
 
 SMOOTH = Limits(speed=20.0, torque=127.0, jerk=1e5)
 RAIL = Redundant3T1R()  # its rails lie along x: a move along x moves every joint as far
