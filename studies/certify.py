@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from design import Certificate, Region, best_bound, certify, replay, worst_poses
+from design.budget import Budget
 from design.nlp import Problem
 from design.search import WorstPoses
 from design.synthesis import Progress
@@ -96,26 +97,36 @@ class Question:
             return (Claim(margin, at_least, best=False),)
         return (self._claim(margin),)
 
-    def worst(self, margin: str) -> WorstPoses:
-        """What a dense search finds."""
-        return worst_poses(self.robot, self.region, margin, about=self.study.dense_sample, **self.measure)
+    def worst(self, margin: str, seconds: float = math.inf) -> WorstPoses:
+        """What a dense search finds in so much time."""
+        asked: dict[str, Any] = {"about": self.study.dense_sample, "seconds": seconds}
+        return worst_poses(self.robot, self.region, margin, **asked, **self.measure)
 
-    def prove(self, claim: Claim, worst: WorstPoses | None, known: Certificate | None, progress: Progress) -> Proof:
+    def prove(
+        self,
+        claim: Claim,
+        worst: WorstPoses | None,
+        known: Certificate | None,
+        progress: Progress,
+        seconds: float = math.inf,
+    ) -> Proof:
         """Answer a claim.
 
         Args:
             worst: what a dense search found; None to search now.
             known: a certificate that is replayed instead of a search for another where it proves the claim.
             progress: told a line of text at each step.
+            seconds: for the searches; a proof that runs out of them is "undecided", with the boxes left.
         """
+        budget = Budget(seconds)
         if worst is None:
             progress(f"worst poses of {claim.margin}")
-            worst = self.worst(claim.margin)
+            worst = self.worst(claim.margin, budget.share(4).seconds)
         started = time.perf_counter()
         if known is not None and self._stands(known, claim):
             certificate = known
         else:
-            certificate = self._certificate(claim, worst.value, progress)
+            certificate = self._certificate(claim, worst.value, progress, budget)
         seconds, sampled = time.perf_counter() - started, worst.value
         if certificate.counterexample is not None:
             found = float(self.robot.margin(claim.margin, certificate.counterexample, *self.measure.values()))
@@ -136,17 +147,19 @@ class Question:
             return False
         return known.status == "proved"
 
-    def _certificate(self, claim: Claim, worst: float, progress: Progress) -> Certificate:
+    def _certificate(self, claim: Claim, worst: float, progress: Progress, budget: Budget) -> Certificate:
         """A required bound within the tolerance of the worst case is the best, too; 0 is tried where none is proved."""
         asked = self.study.certify
         search: dict[str, Any] = self.measure | {"most_boxes": asked.most_boxes, "progress": progress}
         required, tolerance = claim.at_least, asked.tolerance * abs(worst)
         near = required is not None and worst - required <= tolerance
         if claim.best and not near and 0.0 < tolerance < math.inf:
-            best = best_bound(self.robot, self.region, claim.margin, tolerance, **search)
+            share = budget.share(2).seconds
+            best = best_bound(self.robot, self.region, claim.margin, tolerance, seconds=share, **search)
             if best is not None and (required is None or best.certificate.at_least >= required):
                 return best.certificate
-        return certify(self.robot, self.region, claim.margin, at_least=required or 0.0, **search)
+        left = budget.share(1).seconds
+        return certify(self.robot, self.region, claim.margin, at_least=required or 0.0, seconds=left, **search)
 
 
 def question_of(study: Study, robot: Mechanism) -> Question:
@@ -155,9 +168,21 @@ def question_of(study: Study, robot: Mechanism) -> Question:
 
 
 def prove_all(
-    question: Question, worst: Mapping[str, WorstPoses], known: Mapping[str, Certificate], progress: Progress
+    question: Question,
+    worst: Mapping[str, WorstPoses],
+    known: Mapping[str, Certificate],
+    progress: Progress,
+    seconds: float = math.inf,
 ) -> tuple[Proof, ...]:
-    """Every claim of the study; `worst` and `known` by margin, as far as there are any."""
-    return tuple(
-        question.prove(claim, worst.get(claim.margin), known.get(claim.margin), progress) for claim in question.claims()
-    )
+    """Every claim of the study.
+
+    Args:
+        worst, known: by margin, as far as there are any; see `Question.prove`.
+        progress: told a line of text at each step.
+        seconds: for all; each claim gets an equal share of what is left.
+    """
+    budget, claims, proofs = Budget(seconds), question.claims(), []
+    for k, claim in enumerate(claims):
+        share = budget.share(len(claims) - k).seconds
+        proofs.append(question.prove(claim, worst.get(claim.margin), known.get(claim.margin), progress, share))
+    return tuple(proofs)
