@@ -111,7 +111,7 @@ class Certify(Model):
     """None for all that are required, and the objective."""
     tolerance: Annotated[Positive, Field(lt=1), Key("a number above 0 and below 1")] = 0.01
     """By how much a best bound may stay below the lowest value found, relative to that value."""
-    most_boxes: Annotated[int, Field(ge=4, le=10**9), Key("a whole number from 4 to 1000000000")] = 4_000_000
+    most_boxes: Annotated[int, Field(ge=4, le=8_000_000), Key("a whole number from 4 to 8000000")] = 4_000_000
     """After so many a claim stays undecided."""
 
 
