@@ -29,7 +29,8 @@ from trajectory.timing import TimeLaw
 INTERVALS = 1000
 _LEAST_IN_PIECE = 8  # intervals between two knots of the path, at first
 _EXCESS = 1e-4  # over a limit in the middle of an interval that is not halved
-_UNUSED = 5e-4  # mean over the duration of the share of the limits that is left unused
+_UNUSED = 5e-4  # mean over the duration of the share of the limits that is left unused: twice what time may be lost
+_MOST = 40_000  # points on which time is still gained; where more were needed, more may be left unused
 _KEPT = 0.5  # of that: what the intervals that are not halved may leave
 _ROUNDS = 40  # of halving
 _REFUSED = {
@@ -121,7 +122,7 @@ def _unsettled(rows: PathRows, middle: PathRows, x: Array) -> Array:
     speed = np.sqrt(x)
     lasting = 2 * lengths / (speed[1:] + speed[:-1])
     unused, exceeded = np.maximum(1.0 - used, 0.0) * lasting / lasting.sum(), used > 1.0 + _EXCESS
-    if unused.sum() <= _UNUSED:
+    if unused.sum() <= _UNUSED or x.size > _MOST:
         return exceeded
     order = np.argsort(unused)
     lost = np.empty(unused.size)
