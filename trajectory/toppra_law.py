@@ -32,6 +32,7 @@ _EXCESS = 1e-4  # over a limit in the middle of an interval that is not halved
 _UNUSED = 5e-4  # mean over the duration of the share of the limits that is left unused: twice what time may be lost
 _MOST = 40_000  # points on which time is still gained; where more were needed, more may be left unused
 _KEPT = 0.5  # of that: what the intervals that are not halved may leave
+_GRADING = 4.0  # times as long as its neighbour an interval may be: its middle alone does not show what it exceeds
 _ROUNDS = 40  # of halving
 _REFUSED = {
     "jerk": "its s'' is bang-bang",
@@ -122,6 +123,7 @@ def _unsettled(rows: PathRows, middle: PathRows, x: Array) -> Array:
     speed = np.sqrt(x)
     lasting = 2 * lengths / (speed[1:] + speed[:-1])
     unused, exceeded = np.maximum(1.0 - used, 0.0) * lasting / lasting.sum(), used > 1.0 + _EXCESS
+    exceeded |= lengths > _GRADING * np.minimum(np.append(lengths[1:], np.inf), np.append(np.inf, lengths[:-1]))
     if unused.sum() <= _UNUSED or x.size > _MOST:
         return exceeded
     order = np.argsort(unused)
