@@ -8,7 +8,6 @@ given at a point (in the middle of its corner) and never leaves the range of the
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -66,6 +65,10 @@ class RoundedPath:
     def stops(self) -> tuple[float, ...]:
         """As `Path.stops`: the corners without a blend."""
         return self._layout.stops
+
+    def waypoint(self, s: float) -> int | None:
+        """As `Path.waypoint`."""
+        return int(np.argmin(np.abs(self._layout.at - s))) + 1
 
     def as_dict(self) -> dict[str, object]:
         """The fields, as lists."""
