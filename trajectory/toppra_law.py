@@ -68,6 +68,7 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     require_possible(robot, path, limits, payload, s)
     asked = {**limits.as_dict(), "payload": payload, "path": path.as_dict()}
     rows = path_rows(robot, path, limits, payload, s)
+    rows.friction[[0, -1]] = 0.0  # at rest
     for _ in range(_ROUNDS):
         x, blocked = _profile(rows, asked)
         if blocked >= 0:
