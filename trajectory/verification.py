@@ -28,14 +28,14 @@ from trajectory.timed import TimedMotion
 from trajectory.usage import Use, uses
 
 _SMOOTH = 1e-9  # of the largest s'': a smaller jump is rounding
-_TOLERANCES = {  # SI, the closure in m^2; the two integrals are relative
+_TOLERANCES = {  # relative, to the sizes that `Verification.residuals` names
     "start pose": 1e-9,
     "end pose": 1e-9,
     "start speed": 1e-9,
     "end speed": 1e-9,
     "closure": 1e-9,
     "change of assembly mode": 0.5,
-    "kink of the path": 1e-7,
+    "kink of the path": 2e-8,
     "integral of acceleration": 1e-4,
     "integral of speed": 1e-6,
 }
@@ -65,8 +65,9 @@ class Verification:
         duration: of the motion [s].
         peaks: of joint speed, joint acceleration, torque, tool speed, tool acceleration, joint jerk, rms torque; of
             joint position and torque at speed where they are limited.
-        residuals: of end poses, end speeds and loop closure, SI, and of the assembly mode; of the joints' integrals,
-            over the largest speed and over the way of the joints.
+        residuals: of the end poses [rad, or over the robot's size], of the end speeds over the largest, of the loop
+            closure [rad, or over the robot's size]; how many samples are in another assembly mode; of the joints'
+            integrals, over the largest speed and over the way of the joints.
         reach: the worst limb's margin [m]; negative or NaN fails.
         rms_torque: (m,) over the whole duration [N m or N].
         rms_over_peak: (m,) each joint's RMS torque over its own peak; 0 where it bears none.
@@ -203,15 +204,17 @@ def _jump(times: Array, acceleration: Array, first: Array) -> tuple[float, float
 
 def _residuals(robot: Mechanism, timed: TimedMotion, motion: Motion, before: PoseMotion) -> dict[str, float]:
     pose, joints = motion.tool.pose, from_actuators(robot, motion.joints.position)
-    first = timed.at(np.array(0.0))
+    first, units = timed.at(np.array(0.0)), _units(robot, pose.shape[-1])
+    fastest, j_x = _largest(motion.tool.velocity / units), robot.jacobians(pose[:, 0])[1]
+    gap = robot.closure_residual(pose, joints) / np.abs(j_x * units).max(axis=(0, 2))
     return {
-        "start pose": _largest(first.pose - before.pose),
-        "end pose": _largest(pose[-1, -1] - timed.ends[1]),
-        "start speed": _largest(first.velocity - before.velocity),
-        "end speed": _largest(motion.tool.velocity[-1, -1]),
+        "start pose": _largest((first.pose - before.pose) / units),
+        "end pose": _largest((pose[-1, -1] - timed.ends[1]) / units),
+        "start speed": _largest((first.velocity - before.velocity) / units) / fastest,
+        "end speed": _largest(motion.tool.velocity[-1, -1] / units) / fastest,
         "kink of the path": timed.kink,
-        "closure": _largest(robot.closure_residual(pose, joints)),
-        "change of assembly mode": _changes(robot.jacobians(pose[:, 0])[1]),
+        "closure": _largest(gap),
+        "change of assembly mode": _changes(j_x),
     }
 
 
@@ -224,6 +227,13 @@ def _changes(j_x: Array) -> float:
         return 0.0
     sides = np.sign(np.linalg.det(j_x[np.isfinite(j_x).all(axis=(-2, -1))]))
     return float(np.count_nonzero(sides != sides[:1]))
+
+
+def _units(robot: Mechanism, count: int) -> Array:
+    """(n,) what makes a difference of poses small: the robot's size for a length, 1 for an angle."""
+    units = np.full(count, robot.geometry.size)
+    units[list(robot.rotations)] = 1.0
+    return units
 
 
 def _integral_residuals(times: Array, motion: Motion) -> dict[str, float]:
