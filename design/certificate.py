@@ -46,7 +46,7 @@ class Certificate:
     """A claim, the answer, and for a proof the boxes that anyone can check again.
 
     Attributes:
-        mechanism, digest, ranges: class name, SHA-256 of the geometry and of the joints' ranges.
+        mechanism, digest, conditions: class name, SHA-256 of the geometry, and of joint ranges and working mode.
         region, margin, at_least: the claim.
         bounds, characteristic_length: what the FVI is measured with; length in metres.
         version, edition: of the program that made it, and `EDITION` then.
@@ -62,7 +62,7 @@ class Certificate:
 
     mechanism: str
     digest: str
-    ranges: str
+    conditions: str
     region: Region
     margin: str
     at_least: float
@@ -166,7 +166,7 @@ def _certificate(statement: Statement, region: Region, mirrors: Mirrors, found: 
     return Certificate(
         mechanism=type(statement.robot).__name__,
         digest=statement.robot.geometry.digest,
-        ranges=statement.robot.ranges.digest,
+        conditions=statement.robot.conditions_digest,
         region=region,
         margin=statement.margin,
         at_least=statement.at_least,

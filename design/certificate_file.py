@@ -29,7 +29,7 @@ Array = np.ndarray
 _PLAIN: dict[str, type] = {
     "mechanism": str,
     "digest": str,
-    "ranges": str,
+    "conditions": str,
     "margin": str,
     "at_least": float,
     "characteristic_length": float,

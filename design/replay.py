@@ -42,14 +42,14 @@ def replay(
         How many boxes were bounded again; 1 for the pose of a refutation.
 
     Raises:
-        OtherCertificate: another mechanism, geometry, ranges, version, edition, region, margin, FVI bounds or length,
-            or a lower bound.
+        OtherCertificate: another mechanism, geometry, joint range, working mode, version, edition, region, margin, FVI
+            bounds or length, or a lower bound.
         BrokenCertificate: its boxes do not cover the region, are not as many as it says, or one is not proved; its pose
             does not refute; or it decides nothing.
     """
     _same("mechanism", certificate.mechanism, type(robot).__name__)
     _same("geometry", certificate.digest, robot.geometry.digest)
-    _same("joint ranges", certificate.ranges, robot.ranges.digest)
+    _same("joint ranges or working mode", certificate.conditions, robot.conditions_digest)
     _same("version", certificate.version, version("linkwright"))
     _same("edition", certificate.edition, EDITION)
     if region is not None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from types import SimpleNamespace
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -202,6 +203,11 @@ class GoughStewart(SixLegs):
         return assembly_modes(self, self._possible(joints))
 
     # Masses and drawing.
+
+    def conditions(self) -> dict[str, Any]:
+        """Home too, where the joints rest there."""
+        at_home = {"home": self.home.tolist()} if self.ranges.rest is None else {}
+        return super().conditions() | at_home
 
     def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:
         """Universal joints on the base and spherical ones on the platform, mounted along the legs at `ranges.rest`."""

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Callable, Sequence
+from dataclasses import asdict
 from typing import Any, Self
 
 import casadi as ca
@@ -87,6 +90,15 @@ class Mechanism(Definition):
 
     def __hash__(self) -> int:
         return self._hash
+
+    def conditions(self) -> dict[str, Any]:
+        """Plain data that a margin depends on beside the geometry: the joint ranges and the working mode."""
+        return {"ranges": asdict(self.ranges), "mode": self.mode}
+
+    @property
+    def conditions_digest(self) -> str:
+        """SHA-256 of `conditions`, to tell which robot a proof was made for."""
+        return hashlib.sha256(json.dumps(self.conditions(), sort_keys=True).encode()).hexdigest()
 
     def with_geometry(self, geometry: GeometryRecord) -> Self:
         """The same robot with another geometry; a home that was given stays."""

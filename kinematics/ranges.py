@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 import casadi as ca
@@ -52,11 +50,6 @@ class JointRanges:
             InvalidValue: naming the field.
         """
         self.limits(count)
-
-    @property
-    def digest(self) -> str:
-        """SHA-256 of the numbers, to tell which ranges a file was made for."""
-        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
 
 
 @dataclass(frozen=True)
