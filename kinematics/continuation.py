@@ -99,11 +99,9 @@ def _closed(robot: Mechanism, pose: Array, joints: Array, moved: Array, side: Ar
         pose = robot.moved(pose, np.where(good[:, None], twist, 0.0))
         if (rounded | ~good).all():
             break
-    state = _state(robot, pose, joints)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        open_by = np.abs(state.gap) / np.linalg.norm(_lengths(robot, state.j_x), axis=-1)
-    closes = (open_by <= _ROUNDING * 10 * robot.geometry.size).all(axis=-1)  # with more joints than freedoms it may not
-    return pose, good & rounded & closes & (state.determinant * side > 0.0)
+    gap = np.abs(robot.closure_gap(pose, joints)).max(axis=-1)  # with more joints than freedoms it may stay open
+    closes = gap <= 10 * _ROUNDING
+    return pose, good & rounded & closes & (_state(robot, pose, joints).determinant * side > 0.0)
 
 
 def _state(robot: Mechanism, pose: Array, joints: Array) -> _State:
@@ -130,14 +128,5 @@ def _solved(state: _State, right: Array) -> Array:
 
 def _size(robot: Mechanism, twist: Array) -> Array:
     """(k,) the largest angle [rad] or length over the robot's size."""
-    unit = np.full(twist.shape[-1], robot.geometry.size)
-    unit[list(robot.rotations)] = 1.0
-    largest: Array = np.abs(twist / unit).max(axis=-1)
+    largest: Array = np.abs(twist / robot.pose_units()).max(axis=-1)
     return largest
-
-
-def _lengths(robot: Mechanism, j_x: Array) -> Array:
-    """J_x with its rotations' columns made lengths by the robot's size."""
-    unit = np.ones(j_x.shape[-1])
-    unit[list(robot.rotations)] = robot.geometry.size
-    return j_x / unit

@@ -137,6 +137,19 @@ class Mechanism(Definition):
         pose, joints = self._poses(pose), self._joints(joints)
         return evaluate(self.program(written.closure), *together(pose, joints))[0]
 
+    def closure_gap(self, pose: Array, joints: Array) -> Array:
+        """(..., n), (..., m) -> (..., m) by what displacement of the platform each limb's closure is missed, at least.
+
+        In radians, or in lengths over the robot's size.
+        """
+        return evaluate(self.program(written.closure_gap), *together(self._poses(pose), self._joints(joints)))[0]
+
+    def pose_units(self) -> Array:
+        """(n,) what makes a difference of poses small or large: the robot's size for a length [m], 1 for an angle."""
+        units = np.full(len(self.pose_names), self.geometry.size)
+        units[list(self.rotations)] = 1.0
+        return units
+
     def jacobians(self, pose: Array, joints: Array | None = None) -> tuple[Array, Array]:
         """J_q (..., m, m) and J_x (..., m, n), with J_q q' = J_x t; working mode, unless `joints` (..., m) say."""
         if joints is None:

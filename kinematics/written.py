@@ -28,6 +28,11 @@ def closure(_: Mechanism, model: Model) -> Build:
     return [model.pose, model.joints], [model.closure]
 
 
+def closure_gap(robot: Mechanism, model: Model) -> Build:
+    rows = model.j_x @ ca.diag(ca.DM(robot.pose_units()))
+    return [model.pose, model.joints], [model.closure / ca.sqrt(ca.sum2(rows * rows))]
+
+
 def jacobians_of_joints(_: Mechanism, model: Model) -> Build:
     return [model.pose, model.joints], [model.j_q, model.j_x]
 

@@ -204,17 +204,16 @@ def _jump(times: Array, acceleration: Array, first: Array) -> tuple[float, float
 
 def _residuals(robot: Mechanism, timed: TimedMotion, motion: Motion, before: PoseMotion) -> dict[str, float]:
     pose, joints = motion.tool.pose, from_actuators(robot, motion.joints.position)
-    first, units = timed.at(np.array(0.0)), _units(robot, pose.shape[-1])
-    fastest, j_x = _largest(motion.tool.velocity / units), robot.jacobians(pose[:, 0])[1]
-    gap = robot.closure_residual(pose, joints) / np.abs(j_x * units).max(axis=(0, 2))
+    first, units = timed.at(np.array(0.0)), robot.pose_units()
+    fastest = _largest(motion.tool.velocity / units)
     return {
         "start pose": _largest((first.pose - before.pose) / units),
         "end pose": _largest((pose[-1, -1] - timed.ends[1]) / units),
         "start speed": _largest((first.velocity - before.velocity) / units) / fastest,
         "end speed": _largest(motion.tool.velocity[-1, -1] / units) / fastest,
         "kink of the path": timed.kink,
-        "closure": _largest(gap),
-        "change of assembly mode": _changes(j_x),
+        "closure": _largest(robot.closure_gap(pose, joints)),
+        "change of assembly mode": _changes(robot.jacobians(pose[:, 0])[1]),
     }
 
 
@@ -227,13 +226,6 @@ def _changes(j_x: Array) -> float:
         return 0.0
     sides = np.sign(np.linalg.det(j_x[np.isfinite(j_x).all(axis=(-2, -1))]))
     return float(np.count_nonzero(sides != sides[:1]))
-
-
-def _units(robot: Mechanism, count: int) -> Array:
-    """(n,) what makes a difference of poses small: the robot's size for a length, 1 for an angle."""
-    units = np.full(count, robot.geometry.size)
-    units[list(robot.rotations)] = 1.0
-    return units
 
 
 def _integral_residuals(times: Array, motion: Motion) -> dict[str, float]:
