@@ -18,6 +18,7 @@ from design.region import Region
 from design.search import DENSE, WorstPoses, worst_poses
 from kinematics import Mechanism, UnreachablePose
 from kinematics.arguments import positive, whole
+from kinematics.errors import InvalidGeometry
 
 Array = np.ndarray
 SECONDS = 600.0
@@ -127,24 +128,28 @@ def synthesise(
     region.check(problem.robot.pose_names)
     _require_possible_sums(problem)
     before = worst_of(problem, problem.robot, region, about, exchange.budget.left)
-    exchange.note(problem.robot, before)
+    if problem.allows(problem.robot):
+        exchange.note(problem.robot, before)
     poses = region.spread(problem.robot.pose_names)
     firsts = _reaching_starts(problem, poses, seed, starts)
     sizes = problem.sizes(problem.robot_with(firsts[0]), poses)
     solution = exchange.best_of(poses, firsts, sizes)
     rounds: list[Round] = []
     for _ in range(whole("max_rounds", max_rounds, 1)):
-        robot = problem.robot_with(_rounded(problem, solution.values))
+        robot = exchange.robot_of(solution)
         after = worst_of(problem, robot, region, about, exchange.budget.left)
         found = exchange.note(robot, after)
         rounds.append(_round(solution, found, len(poses)))
         progress(f"round {len(rounds)}: {rounds[-1]}")
-        close = found.objective >= solution.objective - tolerance * max(abs(solution.objective), np.spacing(1.0))
-        if close and found.shortfall <= 0.0 and all(worst.complete for worst in after.values()):
+        slack = tolerance * abs(solution.objective)
+        settled = found.objective >= solution.objective - slack and found.shortfall <= 0.0
+        better = exchange.better_than(found, slack)
+        if settled and better is None and all(worst.complete for worst in after.values()):
             return Synthesis(robot, before, after, rounds, solution.status, after[problem.objective].sampled)
         exchange.require_time(f"after {len(rounds)} rounds, the last one: {rounds[-1]}", solution)
         poses = np.concatenate([poses, *(_offenders(problem, solution, sizes, *item) for item in after.items())])
-        solution = exchange.first_of(poses, [solution.values, *firsts], sizes)
+        nearest = better.robot.geometry.vector()[problem.places()] if settled and better else solution.values
+        solution = exchange.first_of(poses, [nearest, *firsts], sizes)
     raise SynthesisFailed(f"the exchange did not settle; its last round: {rounds[-1]}", solution.status, exchange.seen)
 
 
@@ -166,6 +171,24 @@ class _Exchange:
         if np.isfinite(found.objective) and (self.seen is None or found.rank > self.seen.rank):
             self.seen = found
         return found
+
+    def better_than(self, found: Candidate, slack: float) -> Candidate | None:
+        """The best geometry seen, where it beats the one that was found: the NLP is to be solved from there, too."""
+        best = self.seen
+        beats = best is not None and best.shortfall <= 0.0 and best.objective > found.objective + slack
+        return best if beats else None
+
+    def robot_of(self, solution: NlpSolution) -> Mechanism:
+        """The robot of a solution, its variables rounded.
+
+        Raises:
+            SynthesisFailed: the mechanism refuses this geometry.
+        """
+        try:
+            return self.problem.robot_with(_rounded(self.problem, solution.values))
+        except InvalidGeometry as error:
+            what = f"the NLP came to what is no geometry within the variables' bounds: {error}"
+            raise SynthesisFailed(what, solution.status, self.seen) from error
 
     def best_of(self, poses: Array, firsts: list[Array], sizes: Mapping[str, float]) -> NlpSolution:
         """The best converged solution of all starts; each may take its share of the time."""
@@ -199,7 +222,7 @@ class _Exchange:
 
     def _fail(self, poses: Array, firsts: list[Array], last: NlpSolution) -> NlpSolution:
         """Raise what a solution that did not converge comes to, with its geometry where that is the best seen."""
-        robot = self.problem.robot_with(_rounded(self.problem, last.values))
+        robot = self.robot_of(last)
         if not self.budget.spent:
             self.note(robot, worst_of(self.problem, robot, self.region, self.about, self.budget.left))
         self.require_time(f"by the NLP over {len(poses)} poses", last)
@@ -231,29 +254,37 @@ def _reaching_starts(problem: Problem, poses: Array, seed: int, count: int) -> l
         SynthesisFailed: none of many reaches them all; the one that comes nearest is described.
     """
     low, high = problem.bounds()
-    rng = np.random.default_rng(seed)
+    rng, tries = np.random.default_rng(seed), _ATTEMPTS * count
     found: list[Array] = []
-    nearest, shortest = problem.robot, -np.inf
+    nearest: Mechanism | None = None
+    shortest, refusal = -np.inf, ""
     prototype = np.clip(problem.robot.geometry.vector()[problem.places()], low, high)
-    for attempt in range(_ATTEMPTS * count):
+    for attempt in range(tries):
         values = prototype if attempt == 0 else np.array(problem.from_unit(rng.random(len(low))))
-        robot = problem.robot_with(values)
+        try:
+            robot = problem.robot_with(values)
+        except InvalidGeometry as error:
+            refusal = str(error)
+            continue
         margin = float(np.nan_to_num(robot.margin("reach", poses), nan=-np.inf).min())
         if margin > 0.0:
             found.append(values)
-        elif margin > shortest:
+        elif nearest is None or margin > shortest:
             nearest, shortest = robot, margin
         if len(found) == count:
             break
-    if not found:
-        try:
-            nearest.require_reachable(poses)
-        except UnreachablePose as error:
-            raise SynthesisFailed(
-                f"none of {_ATTEMPTS * count} geometries within the bounds reaches the region; the nearest: {error}",
-                "not started",
-            ) from error
-    return found
+    if found:
+        return found
+    if nearest is None:
+        raise SynthesisFailed(
+            f"none of {tries} draws within the bounds is a geometry; the last: {refusal}", "not started"
+        )
+    try:
+        nearest.require_reachable(poses)
+    except UnreachablePose as error:
+        refusal = str(error)
+    what = f"none of {tries} geometries within the bounds reaches the region"
+    raise SynthesisFailed(f"{what}; the nearest: {refusal or 'on the very edge of reach'}", "not started")
 
 
 def _rounded(problem: Problem, values: Array) -> Array:
