@@ -10,9 +10,9 @@ from typing import Any
 
 from design import Certificate, Region, best_bound, certify, replay, worst_poses
 from design.budget import Budget
+from design.exchange import Progress
 from design.nlp import Problem
 from design.search import WorstPoses
-from design.synthesis import Progress
 from kinematics import Mechanism
 from kinematics.errors import InvalidValue, LinkwrightError
 from kinematics.shown import rounded_down

@@ -10,9 +10,10 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from design import Bounds, Box, Cylinder, Requirement, SumLimit, SynthesisFailed, certify, worst_poses
+from design.exchange import rounded
 from design.nlp import Problem, active_sets, solve
 from design.region import Region
-from design.synthesis import _rounded, synthesise
+from design.synthesis import synthesise
 from kinematics import Delta, Heli4, Hexa, Peppermill, Redundant3T1R
 from kinematics.errors import InvalidValue
 
@@ -279,7 +280,7 @@ def test_an_optimum_of_a_margin_that_holds_two_arms_only_reaches_everywhere() ->
 
 def test_a_result_written_and_read_back_is_the_very_number() -> None:
     asked = problem(("arm_length", 0.30, 0.42), ("base_radius", 0.0413, 0.0413 * 1.0000001))
-    vector = _rounded(asked, np.array([0.3512345678912, 0.041300000041]))
+    vector = rounded(asked, np.array([0.3512345678912, 0.041300000041]))
     assert [float(f"{v:.8g}") for v in vector] == vector.tolist()
     assert vector[1] == 0.0413
 
