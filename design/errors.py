@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from kinematics.errors import LinkwrightError, plain
 
 if TYPE_CHECKING:
-    from design.synthesis import Candidate
+    from design.exchange import Candidate
 
 
 class InvalidRegion(LinkwrightError):

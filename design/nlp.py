@@ -103,6 +103,13 @@ class Problem:
         entries = range(max(sizes[f] for f in limit.fields))
         return [[starts[f] + (k if sizes[f] > 1 else 0) for f in limit.fields] for k in entries]
 
+    def allows(self, robot: Mechanism) -> bool:
+        """Whether a robot's variables are within their bounds and its sums within their limits."""
+        vector, (low, high) = robot.geometry.vector(), self.bounds()
+        values = vector[self.places()]
+        sums = (vector[places].sum() <= limit.at_most for limit in self.sums for places in self.summed(limit))
+        return bool((low <= values).all() and (values <= high).all() and all(sums))
+
     def robot_with(self, values: Array) -> Mechanism:
         """The robot with the variables at these values (k,)."""
         vector = self.robot.geometry.vector()

@@ -20,8 +20,7 @@ import numpy as np
 from design.normal_form import Form, NoForm, forms
 from design.region import Region
 from kinematics import Mechanism
-from kinematics.model import model_of
-from kinematics.working_mode import Mode
+from kinematics.model import Model
 
 Array = np.ndarray
 Mirrors = tuple[tuple[str, ...], ...]
@@ -32,7 +31,7 @@ def mirrors_of(robot: Mechanism, region: Region, margin: str) -> Mirrors:
     """The robot's mirrors that keep the region and are shown to keep the margin; the first name of each is halved."""
     if margin not in _OF_JACOBIANS:
         return ()
-    kept = [names for names in robot.mirrors if _keeps(region, names) and _holds(type(robot), robot.mode, names)]
+    kept = [names for names in robot.mirrors if _keeps(region, names) and _holds(type(robot), robot.model(), names)]
     halved = [names[0] for names in kept]
     return tuple(names for names in kept if sum(name in halved for name in names) == 1)
 
@@ -52,9 +51,8 @@ def _keeps(region: Region, names: tuple[str, ...]) -> bool:
 
 
 @lru_cache(maxsize=64)
-def _holds(robot: type[Mechanism], mode: Mode, names: tuple[str, ...]) -> bool:
+def _holds(robot: type[Mechanism], model: Model, names: tuple[str, ...]) -> bool:
     """For every geometry, as this stands for symbols."""
-    model = model_of(robot, mode)
     if not model.drives.is_eye() or len(robot.pose_names) != model.j_x_at_pose.shape[1]:
         return False
     signs = [-1 if name in names else 1 for name in robot.pose_names]

@@ -224,6 +224,7 @@ def _proof_data(proof: Proof) -> dict[str, Any]:
         "sampled": proof.sampled,
         "gap": proof.gap,
         "counterexample": None if found.counterexample is None else found.counterexample.tolist(),
+        "within_reach": found.within_reach,
         "boxes_left": len(found.left),
     }
 

@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from design import Certificate
+from design.exchange import worst_of
 from design.nlp import Problem, active_sets
 from design.region import Region
 from design.search import WorstPoses
-from design.synthesis import Synthesis, synthesise, worst_of
+from design.synthesis import Synthesis, synthesise
 from kinematics import LinkwrightError, Mechanism
 from studies import setup
 from studies.certify import Proof, Question, prove_all

@@ -10,10 +10,11 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from design import Bounds, Box, Cylinder, Requirement, SumLimit, SynthesisFailed, certify, worst_poses
+from design.exchange import rounded
 from design.nlp import Problem, active_sets, solve
 from design.region import Region
-from design.synthesis import _rounded, synthesise
-from kinematics import Delta, Heli4, Hexa, Redundant3T1R
+from design.synthesis import synthesise
+from kinematics import Delta, Heli4, Hexa, Peppermill, Redundant3T1R
 from kinematics.errors import InvalidValue
 
 REGION = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-math.pi, math.pi))
@@ -140,8 +141,6 @@ def test_a_prototype_that_cannot_reach_is_replaced_by_a_random_start() -> None:
 
 
 def test_a_sum_over_tuples_holds_in_every_entry() -> None:
-    from kinematics import Peppermill
-
     mill = Peppermill()
     limit = SumLimit(("proximal_lengths", "half_distance"), 0.72)
     asked = replace(problem(), robot=mill, sums=(limit,))
@@ -281,6 +280,38 @@ def test_an_optimum_of_a_margin_that_holds_two_arms_only_reaches_everywhere() ->
 
 def test_a_result_written_and_read_back_is_the_very_number() -> None:
     asked = problem(("arm_length", 0.30, 0.42), ("base_radius", 0.0413, 0.0413 * 1.0000001))
-    vector = _rounded(asked, np.array([0.3512345678912, 0.041300000041]))
+    vector = rounded(asked, np.array([0.3512345678912, 0.041300000041]))
     assert [float(f"{v:.8g}") for v in vector] == vector.tolist()
     assert vector[1] == 0.0413
+
+
+def test_an_optimum_is_never_worse_than_a_geometry_that_was_seen_on_the_way() -> None:
+    """From both starts the NLP comes to a local optimum that is a little worse than the prototype."""
+    robot = Peppermill()
+    region = Box(x=(-0.0996, -0.006), y=(-0.2387, 0.1487), z=(-0.1118, 0.0728), theta=(0.0082, 0.1545))
+    asked = replace(
+        problem(("half_distance", 0.0357, 7.0), requirements=(Requirement("J_q", 0.05),)),
+        robot=robot,
+        fvi_bounds=robot.fvi_bounds,
+        characteristic_length=robot.characteristic_length,
+    )
+    found = synthesise(asked, region, starts=1, about=20_000)
+    assert found.after["fvi"].value > found.before["fvi"].value
+
+
+def test_a_geometry_that_its_mechanism_refuses_is_no_optimum_and_named() -> None:
+    """Nothing in J_q keeps the outer rails off half the platform's height, where its closure would be singular."""
+    robot = Redundant3T1R()
+    half = robot.geometry.platform_height / 2
+    asked = replace(
+        problem(("outer_rail_z", 0.99999 * half, 1.00001 * half)),
+        robot=robot,
+        objective="J_q",
+        fvi_bounds=robot.fvi_bounds,
+        characteristic_length=robot.characteristic_length,
+    )
+    region = Box(x=0.0, y=(-0.1, 0.1), z=(-0.1, 0.1), theta=0.0)
+    with pytest.raises(
+        SynthesisFailed, match=r"none of 200 draws within the bounds is a geometry; the last: .*outer_rail_z"
+    ):
+        synthesise(asked, region, starts=1, about=5_000)
