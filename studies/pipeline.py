@@ -15,7 +15,7 @@ from design.nlp import Problem, active_sets
 from design.region import Region
 from design.search import WorstPoses
 from design.synthesis import Synthesis, synthesise, worst_of
-from kinematics import LinkwrightError, Mechanism
+from kinematics import InvalidValue, LinkwrightError, Mechanism
 from studies import setup
 from studies.certify import Proof, Question, prove_all
 from studies.errors import ApproachFailed, Failed, RequirementFailed
@@ -25,6 +25,7 @@ from studies.stages import Lasting, Progress, stage
 from trajectory import Cycle, Limits, Move, Path, Setpoints, cycle_setpoints, lower_bound, there_and_back
 from trajectory.path_certificate import Way
 
+_MOST_SETPOINTS = 1_000_000
 GIVEN = "geometry given by the study"
 
 
@@ -205,6 +206,7 @@ def time_cycle(study: Study, robot: Mechanism) -> Timing:
     cycle = there_and_back(robot, path, limits, payload, timing, asked.payload_back, cannot_keep)
     _require_inside(setup.region_of(study), cycle)
     seconds = time.perf_counter() - started
+    _require_few(sum(piece.duration for piece in cycle.pieces), asked.period)
     points = cycle_setpoints(cycle, asked.period, robot.actuator_units)
     bound = sum(lower_bound(robot, piece.path, limits, payload) for piece in cycle.there)
     return Timing(cycle, points, approach, bound, seconds)
@@ -231,6 +233,17 @@ def _approach(study: Study, robot: Mechanism, path: Path, limits: Limits) -> Mov
         return plan_move(robot, home, start, gentle, asked.payload, asked.period, robot.actuator_units)
     except LinkwrightError as error:
         raise ApproachFailed(tuple(home.tolist()), tuple(start.tolist()), error) from error
+
+
+def _require_few(duration: float, period: float) -> None:
+    """Check that a cycle has not more set-points than a drive and a memory can hold.
+
+    Raises:
+        InvalidValue: of the period.
+    """
+    if not duration <= _MOST_SETPOINTS * period:
+        expected = f"one that cuts the cycle of {duration:.3g} s into at most {_MOST_SETPOINTS:,} set-points"
+        raise InvalidValue("Trajectory period", period, expected)
 
 
 def _require_inside(region: Region, cycle: Cycle) -> None:
