@@ -14,9 +14,10 @@ from kinematics.mjcf import mjcf
 from studies import setup
 from studies.certify import Proof, Question, claims_of
 from studies.committed_proofs import file_of, proof_files
+from studies.cycle_stage import Timing
 from studies.optimum import FILE, optimum_of
 from studies.output_folder import Contents, OutputFolder, Written, require_free
-from studies.pipeline import Outcome, Timing
+from studies.pipeline import Outcome
 from studies.questions import digest_of
 from studies.report import html_report, pictures_of
 from studies.schema import Study

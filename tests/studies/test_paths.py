@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from studies.cycle_stage import time_cycle
 from studies.errors import StudyError
 from studies.load import load_study
-from studies.pipeline import time_cycle
 from studies.setup import path_of, robot_of
 from trajectory import AdeptCycle, RoundedPath, WaypointFileError
 
