@@ -23,7 +23,7 @@ from design.errors import UnreadableCertificate
 from design.region import Box, Cylinder, Region
 from design.tree import MOST_NODES
 from kinematics import FviBounds
-from kinematics.errors import InvalidValue, LinkwrightError
+from kinematics.errors import LinkwrightError
 
 Array = np.ndarray
 _PLAIN: dict[str, type] = {
@@ -40,7 +40,7 @@ _PLAIN: dict[str, type] = {
     "boxes": int,
 }
 _LARGEST_FILE = 1 << 23  # bytes; the largest known has a hundredth of it
-_MOST_LEFT = 1 << 16  # boxes that were not proved
+_MOST_LEFT = 1 << 16  # boxes that were not proved; they show where, and prove nothing
 # Bytes of each member at most, the header of its array included.
 _LARGEST = {
     "header": 1 << 16,
@@ -69,13 +69,7 @@ _FAULTS = (
 
 
 def certificate_bytes(certificate: Certificate) -> bytes:
-    """The file's content; the same certificate gives the same bytes.
-
-    Raises:
-        InvalidValue: more boxes are left than a file holds.
-    """
-    if len(certificate.left) > _MOST_LEFT:
-        raise InvalidValue("boxes left in a certificate's file", len(certificate.left), f"at most {_MOST_LEFT}")
+    """The file's content; the same certificate gives the same bytes. Of the boxes left it keeps the first 65,536."""
     header: dict[str, Any] = {key: getattr(certificate, key) for key in _PLAIN}
     header |= {
         "region": _region_record(certificate.region),
@@ -89,13 +83,13 @@ def certificate_bytes(certificate: Certificate) -> bytes:
         header=np.array(json.dumps(header)),
         counterexample=np.empty(0) if pose is None else pose,
         codes=certificate.codes,
-        left=certificate.left,
+        left=certificate.left[:_MOST_LEFT],
     )
     return buffer.getvalue()
 
 
 def save_certificate(certificate: Certificate, path: Path) -> None:
-    """Write it; the name should end in .npz. Numbers keep every bit."""
+    """Write it; the name should end in .npz. Numbers keep every bit; for boxes left see `certificate_bytes`."""
     path.write_bytes(certificate_bytes(certificate))
 
 
@@ -123,10 +117,10 @@ def _certificate(path: Path) -> Certificate:
     plain = {key: _of_kind(key, header[key], kind) for key, kind in _PLAIN.items()}
     if plain["boxes"] < 0:
         raise ValueError(f"{plain['boxes']} boxes")
-    if (plain["status"] == "refuted") != bool(pose.size) or (plain["status"] == "proved") != bool(codes.size):
-        raise ValueError(
-            f"{pose.size} numbers of a counterexample and {codes.size} boxes for the status {plain['status']!r}"
-        )
+    if plain["status"] not in ("proved", "refuted", "undecided"):
+        raise ValueError(f"the status {plain['status']!r}"[:200])
+    if (plain["status"] == "refuted") != bool(pose.size):
+        raise ValueError(f"{pose.size} numbers of a counterexample for the status {plain['status']!r}")
     return Certificate(
         **plain,
         region=_region(header["region"]),

@@ -124,6 +124,8 @@ def level_set(
         OutOfTime: not even the coarsest map was complete.
     """
     bound = None if bound is None else finite("bound", bound)
+    if math.isfinite(index.least):
+        bound = max(index.least, -math.inf if bound is None else bound)
     tolerance, budget = positive("tolerance", tolerance), Budget(seconds)
     section.check(names)
     found = _refined(index, section, names, bound, tolerance, budget, window_of(section))

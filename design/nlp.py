@@ -25,6 +25,7 @@ from kinematics import FviBounds, Mechanism
 
 Array = np.ndarray
 _DECADES = 10.0  # a variable whose bounds are that far apart is counted in powers
+_TIE = 1e-7  # of the objective's size: of equal optima the one near the start, so that an exchange does not wander
 _SUM_SPARE = 1e-7  # by which a sum stays below its limit, relative to it: what rounding a result may take
 _REACH = "every limb reaches"
 
@@ -158,8 +159,8 @@ def solve(
     if (reach := _reach(problem, poses, geometry)).numel():
         rows[_REACH] = reach
     constraints = ca.vertcat(objective - t, *rows.values())
-    nlp: dict[str, Any] = {"x": ca.vertcat(unit, t), "f": -t, "g": constraints}
     first = problem.to_unit(start)
+    nlp: dict[str, Any] = {"x": ca.vertcat(unit, t), "f": -t + _TIE * ca.sumsqr(unit - first), "g": constraints}
     lowest = float(np.nanmin(np.array(ca.Function("objective", [unit], [objective])(first)), initial=1.0))
     solver = ca.nlpsol("synthesis", "ipopt", nlp, _options(seconds))
     answer = solver(

@@ -19,6 +19,7 @@ from design.errors import InvalidRegion
 Array = np.ndarray
 Interval = float | tuple[float, float]
 _ROUNDING = 1e-12  # relative to the largest number between the bounds
+_LARGEST = 1e100  # of a bound: squares of it must stay numbers
 _FEW = 4  # coordinates up to which three values of each are few poses
 CHUNK = 1 << 15  # poses: enough for all threads, and a chunk stays in the second cache
 
@@ -216,8 +217,8 @@ class Cylinder(Region):
 
     def __init__(self, radius: float, **coordinates: Interval) -> None:
         self.radius = _number(radius)
-        if not self.radius > 0.0:
-            raise InvalidRegion("radius", radius, "a finite length > 0 m")
+        if not self.radius >= 1.0 / _LARGEST:
+            raise InvalidRegion("radius", radius, "a length > 0 m whose square is a number")
         for name in ("x", "y"):
             if name in coordinates:
                 raise InvalidRegion(name, coordinates[name], "only the radius for x and y")
@@ -299,10 +300,11 @@ def _interval(name: str, value: object) -> tuple[float, float]:
     pair = tuple(value) if isinstance(value, list | tuple) else (value, value)
     low, high = (_number(v) for v in pair) if len(pair) == 2 else (math.nan, math.nan)
     if not low <= high:
-        raise InvalidRegion(name, value, "a finite number, or two with the lower first")
+        raise InvalidRegion(name, value, "a number whose square is one too, or two with the lower first")
     return low, high
 
 
 def _number(value: object) -> float:
-    """The value as a float; NaN where it is no finite number."""
-    return float(value) if isinstance(value, Real) and math.isfinite(value) else math.nan
+    """The value as a float; NaN where it is no number of a usual size."""
+    number = float(value) if isinstance(value, Real) and not isinstance(value, bool) else math.nan
+    return number if abs(number) <= _LARGEST else math.nan

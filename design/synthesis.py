@@ -125,6 +125,7 @@ def synthesise(
     tolerance, starts = positive("tolerance", tolerance), whole("starts", starts, 1)
     exchange = _Exchange(problem, region, about, Budget(seconds), progress)
     region.check(problem.robot.pose_names)
+    _require_possible_sums(problem)
     before = worst_of(problem, problem.robot, region, about, exchange.budget.left)
     exchange.note(problem.robot, before)
     poses = region.spread(problem.robot.pose_names)
@@ -205,6 +206,22 @@ class _Exchange:
         short = "; ".join(f"{name} falls short by {by:.3g} of its size" for name, by in last.violations.items())
         what = f"each of the NLP's {len(firsts)} starts over {len(poses)} poses did not converge"
         raise SynthesisFailed(f"{what}{': ' + short if short else ''}", last.status, self.seen)
+
+
+def _require_possible_sums(problem: Problem) -> None:
+    """Check that each sum can hold.
+
+    Raises:
+        SynthesisFailed: its variables' lower bounds alone are too much.
+    """
+    lowest = problem.robot.geometry.vector()
+    lowest[problem.places()] = problem.bounds()[0]
+    for limit in problem.sums:
+        least = max(float(lowest[places].sum()) for places in problem.summed(limit))
+        if least > limit.at_most:
+            raise SynthesisFailed(
+                f"{limit} cannot hold: with every variable at its lower bound it is {least:g}", "not started"
+            )
 
 
 def _reaching_starts(problem: Problem, poses: Array, seed: int, count: int) -> list[Array]:

@@ -16,8 +16,9 @@ from kinematics.linear import determinant
 from kinematics.shapes import together
 
 if TYPE_CHECKING:
-    from kinematics.mechanism import Build, Mechanism
+    from kinematics.mechanism import Mechanism
     from kinematics.model import Model
+    from kinematics.programs import Build
 
 Array = np.ndarray
 # Sizes of a step of the pose: its angle [rad], or its length over the robot's size, whichever is larger.

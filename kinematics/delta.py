@@ -30,6 +30,7 @@ from kinematics.rotary_limbs import (
 from kinematics.rounding import not_below_zero
 
 _DEG = math.pi / 180.0
+_SAME = 1e-6  # of a rod: rounding parts the two poses of a double root by no more
 
 
 @dataclass(frozen=True)
@@ -142,7 +143,8 @@ class Delta(RotaryLimbs):
         joints = self._one(joints)
         both = self._both(joints)[[self._side, 1 - self._side]]
         both = both[np.isfinite(both).all(axis=-1)]
-        return both[:1] if len(both) and np.array_equal(both[0], both[1]) else both
+        meet = len(both) and np.abs(both[0] - both[1]).max() <= _SAME * self.geometry.rod_length
+        return both[:1] if meet else both
 
 
 def _spheres(robot: Delta, model: Model) -> Build:

@@ -221,7 +221,7 @@ def _cosine(a, b):  # type: ignore[no-untyped-def]
     `slack` covers the library's error, the rounding of a shift by pi / 2, and of pi itself, all relative to the angle.
     """
     slack = _LIBRARY * (1.0 + max(abs(a), abs(b)))
-    if not b - a < 6.0 or max(abs(a), abs(b)) > 1e6:
+    if not b - a < 6.0 or max(abs(a), abs(b)) > 1e9:
         return -1.0, 1.0
     low, high = min(np.cos(a), np.cos(b)) - 2.0 * slack, max(np.cos(a), np.cos(b)) + 2.0 * slack
     first, last = np.ceil((a - slack) / np.pi - 1e-12), np.floor((b + slack) / np.pi + 1e-12)

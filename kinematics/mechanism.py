@@ -8,6 +8,7 @@ from typing import Any, Self
 import casadi as ca
 import numpy as np
 
+from kinematics import written
 from kinematics.block_program import BlockProgram
 from kinematics.bodies import InertiaRecord
 from kinematics.clearance import segment_gap_symbolic
@@ -17,17 +18,13 @@ from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.geometry import GeometryRecord
 from kinematics.indices import (
     FviBounds,
-    force_capability_components,
-    fvi,
     fvi_components,
     homogeneous,
-    isotropic,
-    smallest,
 )
 from kinematics.interpreter import evaluate
 from kinematics.linear import volume
 from kinematics.model import Model, model_of
-from kinematics.programs import Build, Write, program_of
+from kinematics.programs import Write, program_of
 from kinematics.ranges import Pair, PassiveJoint, joint_travel
 from kinematics.shapes import checked, together
 from kinematics.working_mode import Mode, mode_at
@@ -109,7 +106,7 @@ class Mechanism(Definition):
 
     def inverse(self, pose: Array) -> Array:
         """(..., n) -> (..., m) joints of the working mode; a NaN row where a limb cannot reach."""
-        return self._evaluate(_inverse, pose)[0]
+        return self._evaluate(written.inverse, pose)[0]
 
     def forward(self, joints: Array, near: Array | None = None) -> Array:
         """(..., m) -> (..., n) the pose with these joints; a NaN row where there is none.
@@ -126,15 +123,15 @@ class Mechanism(Definition):
     def closure_residual(self, pose: Array, joints: Array) -> Array:
         """(..., n), (..., m) -> (..., m) the loop closure; zero when they belong together."""
         pose, joints = self._poses(pose), self._joints(joints)
-        return evaluate(self.program(_closure), *together(pose, joints))[0]
+        return evaluate(self.program(written.closure), *together(pose, joints))[0]
 
     def jacobians(self, pose: Array, joints: Array | None = None) -> tuple[Array, Array]:
         """J_q (..., m, m) and J_x (..., m, n), with J_q q' = J_x t; working mode, unless `joints` (..., m) say."""
         if joints is None:
-            diagonal, j_x = self._evaluate(_jacobians, pose)
+            diagonal, j_x = self._evaluate(written.jacobians, pose)
         else:
             both = together(self._poses(pose), self._joints(joints))
-            diagonal, j_x = evaluate(self.program(_jacobians_of_joints), *both, blank=True)
+            diagonal, j_x = evaluate(self.program(written.jacobians_of_joints), *both, blank=True)
         j_q = np.zeros((*diagonal.shape, diagonal.shape[-1]))
         j_q[..., range(diagonal.shape[-1]), range(diagonal.shape[-1])] = diagonal
         j_q[np.isnan(diagonal).any(axis=-1)] = np.nan
@@ -142,15 +139,19 @@ class Mechanism(Definition):
 
     def inverse_jacobian(self, pose: Array) -> Array:
         """(..., m, n) J_m = J_q^-1 J_x, so that q' = J_m t; of the joints, see `actuator_jacobian`."""
-        return self._evaluate(_inverse_jacobian, pose)[0]
+        return self._evaluate(written.inverse_jacobian, pose)[0]
 
     def actuator_jacobian(self, pose: Array) -> Array:
         """(..., m, n) C J_m: the rates of the actuators, which carry the limits, from the twist."""
-        return self._evaluate(_actuator_jacobian, pose)[0]
+        return self._evaluate(written.actuator_jacobian, pose)[0]
+
+    def pose_rates(self, pose: Array) -> Array:
+        """(..., n, n) what takes a twist to the rates of the pose: the identity unless the pose holds Euler angles."""
+        return evaluate(self.program(written.pose_rates), self._poses(pose), blank=True)[0]
 
     def isotropic(self, pose: Array, characteristic_length: float | None = None) -> tuple[Array, Array]:
         """v_w (...,) and f_w (...,): worst speed and force for unit actuator speed and effort; Shayya et al. (40)."""
-        speed, force = self._evaluate(_isotropic, pose, self._length(characteristic_length))
+        speed, force = self._evaluate(written.isotropic, pose, self._length(characteristic_length))
         return speed[..., 0], force[..., 0]
 
     def force_capability(self, pose: Array, characteristic_length: float | None = None) -> Array:
@@ -158,7 +159,7 @@ class Mechanism(Definition):
 
         With m = n it is f_w; with m > n it is larger, as f_w admits minimum-norm efforts only.
         """
-        return self._evaluate(_force_capability, pose, self._length(characteristic_length))[0][..., 0]
+        return self._evaluate(written.force_capability, pose, self._length(characteristic_length))[0][..., 0]
 
     def fvi(self, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None) -> Array:
         """(...,) min(v_w / v_wl, f_w / f_wl); Shayya et al. (39). NaN where the pose is out of reach."""
@@ -172,7 +173,7 @@ class Mechanism(Definition):
         result = np.empty(len(flat))
         for first in range(0, len(flat), _SLICE):
             part = slice(first, first + _SLICE)
-            (j_mw,) = self._evaluate(_homogeneous, flat[part], length)
+            (j_mw,) = self._evaluate(written.homogeneous, flat[part], length)
             good = np.isfinite(j_mw).all(axis=(-2, -1))
             result[part] = np.where(np.isnan(j_mw).any(axis=(-2, -1)), np.nan, np.inf)
             result[part][good] = np.linalg.cond(j_mw[good])
@@ -197,7 +198,7 @@ class Mechanism(Definition):
     ) -> BlockProgram:
         """What computes a margin other than reach: at a pose, the margin and a number that is NaN out of reach."""
         length = self._length(characteristic_length)
-        return self.program(_within_reach, _margin, name, bounds or self.fvi_bounds, length)
+        return self.program(written.within_reach, written.margin, name, bounds or self.fvi_bounds, length)
 
     def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
         """A margin's components in the model's symbols `pose` and `geometry`, each to be at least the bound.
@@ -237,7 +238,7 @@ class Mechanism(Definition):
 
     def polylines(self, pose: Array) -> dict[str, Array]:
         """Named polylines (k, 3) of the mechanism at one pose (n,), for drawing."""
-        lines, model = self._evaluate(_skeleton, pose), self.model()
+        lines, model = self._evaluate(written.skeleton, pose), self.model()
         return dict(zip(self.skeleton(model.pose, model.joints, model.g), (p.T for p in lines), strict=True))
 
     def singularities(self, pose: Array, tolerance: float = 1e-6) -> dict[str, Array]:
@@ -271,7 +272,7 @@ class Mechanism(Definition):
 
     def _reach(self, pose: Array) -> Array:
         """(..., limbs) each limb's reach [m]."""
-        return evaluate(self.program(_reach), self._poses(pose), blank=True)[0]
+        return evaluate(self.program(written.reach), self._poses(pose), blank=True)[0]
 
     def _length(self, given: float | None) -> float:
         length = self.characteristic_length if given is None else float(given)
@@ -284,7 +285,7 @@ class Mechanism(Definition):
 
         NaN too where the pose is not finite or any of the outputs has no value.
         """
-        program = self.program(_within_reach, write, *given)
+        program = self.program(written.within_reach, write, *given)
         return evaluate(program, self._poses(pose), blank=True)[:-1]
 
     def program(self, write: Write, *given: Any) -> BlockProgram:
@@ -313,61 +314,3 @@ def _vector(given: Sequence[float] | Array | None, what: str, names: tuple[str, 
     if array.shape != (len(names),) or not np.isfinite(array).all():
         raise InvalidValue(what, f"{given!r:.80}", f"{len(names)} finite numbers: {', '.join(names)}")
     return list(array.tolist())
-
-
-# What programs compute.
-
-
-def _within_reach(robot: Mechanism, model: Model, write: Callable[..., list[ca.SX]], *given: Any) -> Build:
-    """The outputs of `write`, and one more that is NaN where a limb cannot reach."""
-    return [model.pose], [*write(robot, model, *given), ca.sum1(robot.limb_roots(model.pose, model.g))]
-
-
-def _reach(robot: Mechanism, model: Model) -> Build:
-    return [model.pose], [robot.reach(model.pose, model.g)]
-
-
-def _closure(_: Mechanism, model: Model) -> Build:
-    return [model.pose, model.joints], [model.closure]
-
-
-def _jacobians_of_joints(_: Mechanism, model: Model) -> Build:
-    return [model.pose, model.joints], [model.j_q, model.j_x]
-
-
-def _inverse(_: Mechanism, model: Model) -> list[ca.SX]:
-    return [model.inverse]
-
-
-def _jacobians(_: Mechanism, model: Model) -> list[ca.SX]:
-    return [model.j_q_at_pose, model.j_x_at_pose]
-
-
-def _inverse_jacobian(_: Mechanism, model: Model) -> list[ca.SX]:
-    return [model.inverse_jacobian]
-
-
-def _actuator_jacobian(_: Mechanism, model: Model) -> list[ca.SX]:
-    return [model.actuator_jacobian]
-
-
-def _isotropic(robot: Mechanism, _: Model, length: float) -> list[ca.SX]:
-    return list(isotropic(robot.homogeneous_jacobian(length)))
-
-
-def _force_capability(robot: Mechanism, _: Model, length: float) -> list[ca.SX]:
-    return [smallest(force_capability_components(robot.homogeneous_jacobian(length)))]
-
-
-def _homogeneous(robot: Mechanism, _: Model, length: float) -> list[ca.SX]:
-    return [robot.homogeneous_jacobian(length)]
-
-
-def _margin(robot: Mechanism, _: Model, name: str, bounds: FviBounds, length: float) -> list[ca.SX]:
-    if name == "fvi":
-        return [fvi(robot.homogeneous_jacobian(length), bounds)]
-    return [smallest(robot.margin_components(name, bounds, length))]
-
-
-def _skeleton(robot: Mechanism, model: Model) -> list[ca.SX]:
-    return [model.at_pose(p) for p in robot.skeleton(model.pose, model.joints, model.g).values()]

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from kinematics.bodies import Bodies, Particle, Rod, Rotor
+from kinematics.continuation import continued
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array
@@ -220,7 +221,12 @@ class Redundant3T1R(RodLevel):
         return poses, errors, ahead
 
     def working_forward(self, joints: Array) -> Array:
-        """(..., 6) -> (..., 4), the candidate of (20) with every slide on its branch's side, (21): usually behind."""
+        """(..., 6) -> (..., 4), the candidate of (20) with every slide behind its platform point, (21), or ahead.
+
+        With slides on both sides two candidates may meet, and rounding would part them: continued from home.
+        """
+        if len(set(self.mode.branches)) > 1:
+            return continued(self, self._joints(joints), self.home)
         return self._chosen(self._joints(joints), _CLOSES * self.geometry.size)
 
     def paper_forward(self, joints: Array) -> Array:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from studies.errors import KeyPath
-from studies.hardware import hardware_faults, hardware_tables, subtable
+from studies.hardware import hardware_faults, hardware_tables, joint_unit, subtable
 from studies.mechanisms import GeometryField, geometry_fields, shape
 from studies.schema import (
     REGION_KINDS,
@@ -45,6 +45,7 @@ def study_table(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> Table:
         {
             "geometry": Table({name: _dimensions(field) for name, field in fields.items()}),
             **hardware_tables(mechanism),
+            "home": _home_table(mechanism),
             "region": _region_table(mechanism, raw.get("region")),
             "optimise": table_of(Optimise).updated(optimise),
             "certify": table_of(Certify).updated({"margins": Key("a list out of", choices=mechanism.margins)}),
@@ -81,6 +82,9 @@ def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyP
             yield ("geometry", name)
     yield from hardware_faults(data, mechanism)
     yield from _uncounted(subtable(data, "trajectory"), len(mechanism.joint_names))
+    joints = subtable(data, "home").get("joints")
+    if isinstance(joints, tuple) and len(joints) != len(mechanism.joint_names):
+        yield ("home", "joints")
     if isinstance(data.get("region"), dict):
         yield from _region_faults(data["region"], mechanism)
     optimise = subtable(data, "optimise")
@@ -130,6 +134,14 @@ def _region_faults(region: Mapping[str, Any], mechanism: type[Mechanism]) -> Ite
             angles = _numbers(interval)
             if angles and angles[-1] - angles[0] > _TURN:
                 yield ("region", name)
+
+
+def _home_table(mechanism: type[Mechanism]) -> Table:
+    count = len(mechanism.joint_names)
+    joints = Key(f"a finite number for each of {count} joints", joint_unit(mechanism))
+    return Table(
+        {name: Key("a finite number", _pose_dimension(name)) for name in mechanism.pose_names} | {"joints": joints}
+    )
 
 
 def _region_table(mechanism: type[Mechanism], region: object) -> Table:

@@ -12,6 +12,7 @@ import numpy as np
 from design.nlp import Problem
 from design.region import Region
 from kinematics import InvalidValue, LinkwrightError, Mechanism
+from kinematics.drives import to_actuators
 from studies import setup
 from studies.errors import ApproachFailed, Failed, RequirementFailed
 from studies.inside import leaving
@@ -106,6 +107,7 @@ def time_cycle(study: Study, robot: Mechanism) -> Timing:
     assert asked is not None
     started = time.perf_counter()
     path, limits, payload = setup.path_of(asked, robot.pose_names), setup.limits_of(asked.limits), asked.payload
+    _require_few(_least_duration(robot, path, limits), asked.period)  # before a proof of every hour of it
     approach = _approach(study, robot, path, limits)
     timing, cannot_keep = setup.timing_of(study)
     cycle = there_and_back(robot, path, limits, payload, timing, asked.payload_back, cannot_keep)
@@ -140,6 +142,14 @@ def _approach(study: Study, robot: Mechanism, path: Path, limits: Limits) -> Mov
         raise ApproachFailed(tuple(home.tolist()), tuple(start.tolist()), error) from error
 
 
+def _least_duration(robot: Mechanism, path: Path, limits: Limits) -> float:
+    """What the joints' travel takes at their speed limits, on the way there [s]; from few poses, so never too much."""
+    (poses,) = path.evaluate(np.linspace(0.0, path.length, 101), 0)
+    joints = to_actuators(robot, robot.inverse(poses))
+    speed = limits.of_joints("speed", joints.shape[1])
+    return 0.0 if speed is None else float((np.nansum(np.abs(np.diff(joints, axis=0)), axis=0) / speed).max())
+
+
 def _require_few(duration: float, period: float) -> None:
     """Check that a cycle has not more set-points than a drive and a memory can hold.
 
@@ -147,7 +157,7 @@ def _require_few(duration: float, period: float) -> None:
         InvalidValue: of the period.
     """
     if not duration <= _MOST_SETPOINTS * period:
-        expected = f"one that cuts the cycle of {duration:.3g} s into at most {_MOST_SETPOINTS:,} set-points"
+        expected = f"one that cuts {duration:.3g} s into at most {_MOST_SETPOINTS:,} set-points"
         raise InvalidValue("Trajectory period", period, expected)
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kinematics import Mechanism
 
 # Without a known mechanism nothing can be said about these.
-_OF_THE_MECHANISM = ("geometry", "inertia", "ranges", "region", "optimise", "certify", "requirement")
+_OF_THE_MECHANISM = ("geometry", "inertia", "ranges", "region", "home", "optimise", "certify", "requirement")
 
 
 def load_study(path: Path) -> Study:

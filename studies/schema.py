@@ -44,6 +44,20 @@ class CylinderRegion(_Region):
     """Of x and y about the z axis."""
 
 
+class Home(Model):
+    """The pose that the robot works around: its working mode follows from it, and an approach starts there."""
+
+    coordinates: dict[str, float]
+    """By the pose's names [m or rad]; one that is left out is in the middle of the region."""
+    joints: Annotated[tuple[float, ...] | None, Key("a finite number a joint")] = None
+    """About the joints at home, which choose a branch of each limb's inverse, such as elbows in; None for the usual."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _gather_coordinates(cls, data: Any) -> Any:
+        return gathered(cls, data)
+
+
 class Fvi(Model):
     """What the force-velocity index (39) is taken from: what the joints give, what is wanted."""
 
@@ -97,7 +111,7 @@ class Certify(Model):
     """None for all that are required, and the objective."""
     tolerance: Annotated[Positive, Field(lt=1), Key("a number above 0 and below 1")] = 0.01
     """By how much a best bound may stay below the lowest value found, relative to that value."""
-    most_boxes: Annotated[int, Field(ge=4, le=10**9), Key("a whole number from 4 to 1000000000")] = 4_000_000
+    most_boxes: Annotated[int, Field(ge=4, le=8_000_000), Key("a whole number from 4 to 8000000")] = 4_000_000
     """After so many a claim stays undecided."""
 
 
@@ -137,6 +151,8 @@ class Study(Model):
     """What differs from the prototype's joint ranges."""
     region: Annotated[Annotated[BoxRegion | CylinderRegion, Field(discriminator="kind")], Table({})]
     """The workspace: every pose that is to be good."""
+    home: Annotated[Home | None, table_of(Home)] = None
+    """The pose that the robot works around; None for the middle of the region."""
     fvi: Annotated[Fvi | None, table_of(Fvi)] = None
     """What the FVI is taken from; None for the mechanism's own."""
     optimise: Annotated[Optimise | None, table_of(Optimise)] = None

@@ -35,7 +35,21 @@ OBJECTIVE = "fvi"
 def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
     """The study's mechanism, masses and joint ranges; `geometry` in place of the prototype with the study's changes."""
     kind = mechanism_class(study.mechanism)
-    return kind(geometry or kind.Geometry(**study.geometry), inertia_of(study), ranges_of(study))
+    joints = None if study.home is None else study.home.joints
+    return kind(
+        geometry or kind.Geometry(**study.geometry),
+        inertia_of(study),
+        ranges_of(study),
+        home=_home_pose(study, kind.pose_names),
+        home_joints=joints,
+    )
+
+
+def _home_pose(study: Study, pose_names: Sequence[str]) -> list[float]:
+    """(n,) the study's own coordinates, the others in the middle of the region."""
+    given = {} if study.home is None else study.home.coordinates
+    middle = region_of(study).intervals
+    return [given.get(name, sum(middle[name]) / 2) for name in pose_names]
 
 
 def home_of(robot: Mechanism) -> Array:
@@ -180,7 +194,7 @@ def timing_of(study: Study) -> tuple[Timing, tuple[str, ...]]:
         from trajectory.free_law import free_motion
 
         return partial(free_motion, within=pose_bounds_of(study)), ()
-    from trajectory.jerk_law import jerk_limited
+    from trajectory.jerk import jerk_limited
 
     return jerk_limited, ()
 

@@ -1,6 +1,6 @@
 """Paths, actuator limits, timing laws, verification and set-points.
 
-The timing laws and the moves load their solvers, toppra, IPOPT and ruckig, at first use.
+The timing laws and the moves load their solvers, IPOPT and ruckig, at first use.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from trajectory.emergency_stop import EmergencyStop, emergency_stop
 from trajectory.errors import (
     InvalidPath,
     LimitsExceeded,
+    MoveRefused,
     PathBeyondLimit,
     PathRefused,
     RoughPath,
@@ -25,13 +26,14 @@ from trajectory.files import CannotWrite, require_writable, write_files
 from trajectory.limits import Limits
 from trajectory.lower_bound import lower_bound
 from trajectory.motion import Motion, PoseMotion, motion_of, pose_motion
-from trajectory.path import Part, Path, Reversed, require_smooth
+from trajectory.path import Part, Path, Reversed, pieces
 from trajectory.path_certificate import PathCertificate, certify_path
 from trajectory.pose_spline import PoseSpline
 from trajectory.repair import Repaired, repair
 from trajectory.rounded import RoundedPath
 from trajectory.setpoint_file import read_setpoints, write_setpoints
 from trajectory.setpoints import Setpoints, cycle_setpoints
+from trajectory.smoothness import require_smooth
 from trajectory.timed import TimedMotion, TimedPath
 from trajectory.timing import PathMotion, TimeLaw
 from trajectory.verification import Peak, Verification, verify
@@ -39,14 +41,14 @@ from trajectory.waypoint_file import read_waypoints
 
 if TYPE_CHECKING:
     from trajectory.free_law import free_motion
-    from trajectory.jerk_law import jerk_limited
+    from trajectory.jerk import jerk_limited
     from trajectory.moves import Move, plan_move, plan_stop
     from trajectory.toppra_law import time_optimal
 
 _LAZY = {
     "Move": "trajectory.moves",
     "free_motion": "trajectory.free_law",
-    "jerk_limited": "trajectory.jerk_law",
+    "jerk_limited": "trajectory.jerk",
     "plan_move": "trajectory.moves",
     "plan_stop": "trajectory.moves",
     "time_optimal": "trajectory.toppra_law",
@@ -70,6 +72,7 @@ __all__ = [
     "LimitsExceeded",
     "Motion",
     "Move",
+    "MoveRefused",
     "Part",
     "Path",
     "PathBeyondLimit",
@@ -99,6 +102,7 @@ __all__ = [
     "jerk_limited",
     "lower_bound",
     "motion_of",
+    "pieces",
     "plan_move",
     "plan_stop",
     "pose_motion",

@@ -164,9 +164,10 @@ class AdeptCycle:
         """The way back."""
         return Reversed(self)
 
-    def split(self) -> tuple[Path, ...]:
-        """As `Path.split`: itself, as its corners are rounded."""
-        return (self,)
+    @property
+    def stops(self) -> tuple[float, ...]:
+        """As `Path.stops`: none, as its corners are rounded."""
+        return self.rounded.stops
 
     def as_dict(self) -> dict[str, object]:
         """The fields, with lists for tuples and the place's own lift."""

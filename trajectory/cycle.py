@@ -15,7 +15,7 @@ import numpy as np
 from kinematics import InvalidValue, Mechanism
 from trajectory.errors import LimitsExceeded
 from trajectory.limits import Limits
-from trajectory.path import Path, Reversed
+from trajectory.path import Path, Reversed, pieces
 from trajectory.path_certificate import PathCertificate, Way, certify_path, worst_of
 from trajectory.pose_spline import InTime, PoseSpline
 from trajectory.repair import Repaired, repair
@@ -150,7 +150,7 @@ def there_and_back(
     limits = replace(limits, **none)
 
     def timed(way: Path, load: float) -> tuple[Piece, ...]:
-        parts = way.split()
+        parts = pieces(way)
         return tuple(
             Piece(part, load, repair(robot, timing(robot, part, limits, load), limits, load)) for part in parts
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path as FilePath
 
@@ -73,6 +74,20 @@ class PathBeyondLimit(LinkwrightError):
         )
 
 
+class MoveRefused(LinkwrightError):
+    """A move passes a pose that it must not: `found` says what, `time` when [s], NaN where it is not known yet."""
+
+    exit_status = 1
+
+    def __init__(self, found: str, time: float, pose: Sequence[float]) -> None:
+        self.found, self.time, self.pose = found, time, tuple(float(v) for v in pose)
+        when = "" if math.isnan(time) else f" at t = {time:.6g} s"
+        super().__init__(
+            f"move{when}, about pose ({', '.join(f'{v:.6g}' for v in self.pose)}): found {found}; "
+            "expected every pose within reach and within the ranges, and none singular"
+        )
+
+
 class TimingFailed(LinkwrightError):
     """No time law was found for what was asked."""
 
@@ -82,6 +97,34 @@ class TimingFailed(LinkwrightError):
         self.law, self.asked, self.found = law, dict(asked), found
         what = ", ".join(f"{name} {value}" for name, value in self.asked.items() if name != "path")
         super().__init__(f"{law} law: {found}; asked for {what}")
+
+
+class WeightBeyondDrive(TimingFailed):
+    """No motion was found past a place where a drive cannot hold the weight, at any speed.
+
+    `limit` is the field of the limits, `cause` the weight alone or with friction; `at` is the arc length [m], `torque`
+    what the weight asks of the joint there, `most` what it has.
+    """
+
+    def __init__(
+        self,
+        law: str,
+        asked: Mapping[str, object],
+        limit: str,
+        cause: str,
+        at: float,
+        pose: Sequence[float],
+        joint: str,
+        torque: float,
+        most: float,
+        joint_unit: str,
+    ) -> None:
+        self.limit, self.cause, self.at, self.joint, self.torque, self.most = limit, cause, at, joint, torque, most
+        self.pose = tuple(float(v) for v in pose)
+        unit = {"rad": "N m", "m": "N"}[joint_unit]
+        where = f"s = {at:.6g} m, pose ({', '.join(f'{v:.6g}' for v in self.pose)})"
+        found = f"the {cause} asks {torque:.6g} {unit} of {joint}; expected at most {most:.6g} ({limit})"
+        super().__init__(law, asked, f"no solution: path at {where}: {found}, or a faster way past it")
 
 
 class LimitsExceeded(LinkwrightError):

@@ -10,14 +10,11 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from kinematics import InvalidValue, Mechanism
-from trajectory.errors import RoughPath
 
 Array = np.ndarray
 SCHOENFLIES = ("x", "y", "z", "theta")
 HIGHEST_ORDER = 4
 _ROUNDING = 1e-12  # of the length: how far outside [0, length] an arc length may be by rounding alone
-_UNIT = 1e-9  # how far from 1 the length of the tangent may be
-_JUMP = 0.05  # how far the tangent may be from the trapezoid of its derivative between neighbouring samples
 
 
 class PathBox(NamedTuple):
@@ -75,8 +72,12 @@ class Path(Protocol):
     def steepest(self, s: Array, order: int) -> Array:
         """(k, n) bounds of the modulus of a derivative, the fourth or fifth, on the whole pieces around s (k,)."""
 
-    def split(self) -> tuple[Path, ...]:
-        """Itself or, where the tangent jumps inside, its parts from one jump to the next, to be timed one by one."""
+    @property
+    def stops(self) -> tuple[float, ...] | None:
+        """Arc lengths inside where its tangent jumps, so that the tool rests there [m]; elsewhere it is smooth.
+
+        None where nothing is known by construction: then it must not jump, and `require_smooth` looks for jumps.
+        """
 
     def as_dict(self) -> dict[str, object]:
         """Plain data that describes the path, for a file's header."""
@@ -118,9 +119,11 @@ class Reversed:
         """As `Path.steepest`."""
         return self.path.steepest(self.length - s, order)
 
-    def split(self) -> tuple[Path, ...]:
-        """The path's own parts, the last one first."""
-        return tuple(Reversed(part) for part in reversed(self.path.split()))
+    @property
+    def stops(self) -> tuple[float, ...] | None:
+        """As `Path.stops`."""
+        stops = self.path.stops
+        return None if stops is None else tuple(self.length - s for s in reversed(stops))
 
     def as_dict(self) -> dict[str, object]:
         """The path's own data, marked as reversed."""
@@ -164,19 +167,24 @@ class Part:
         """As `Path.steepest`."""
         return self.path.steepest(self.start + s, order)
 
-    def split(self) -> tuple[Path, ...]:
-        """As `Path.split`."""
-        return (self,)
+    @property
+    def stops(self) -> tuple[float, ...] | None:
+        """As `Path.stops`."""
+        stops = self.path.stops
+        return None if stops is None else tuple(s - self.start for s in stops if self.start < s < self.stop)
 
     def as_dict(self) -> dict[str, object]:
         """The path's own data, and from where to where."""
         return {**self.path.as_dict(), "from": self.start, "to": self.stop}
 
 
-def pieces(path: Path, stops: Sequence[float]) -> tuple[Path, ...]:
-    """The path itself, or its parts between stops inside it [m]."""
-    edges = [0.0, *stops, path.length]
-    return tuple(Part(path, a, b) for a, b in pairwise(edges)) if stops else (path,)
+def pieces(path: Path) -> tuple[Path, ...]:
+    """The path itself or, where it has stops inside, its parts from one to the next, to be timed one by one."""
+    if not path.stops:
+        return (path,)
+    if isinstance(path, Reversed):  # not a part of it: at its ends the path's own part knows which side is meant
+        return tuple(Reversed(part) for part in reversed(pieces(path.path)))
+    return tuple(Part(path, a, b) for a, b in pairwise((0.0, *path.stops, path.length)))
 
 
 def checked_arc_length(s: Array, length: float, order: int) -> Array:
@@ -209,34 +217,3 @@ def require_poses_of(robot: Mechanism, path: HasPoseNames) -> None:
     if robot.pose_names != path.pose_names:
         what = f"pose of the path for {type(robot).__name__}"
         raise InvalidValue(what, ", ".join(path.pose_names), ", ".join(robot.pose_names))
-
-
-def require_smooth(path: Path, s: Array) -> None:
-    """Check that a path can be passed at speed: a unit tangent that does not jump between the samples.
-
-    A jump shows as a change of the tangent that its own derivative does not explain: over each interval the change is
-    compared with the trapezoid of the second derivative. A reversal within gives 2, a right angle about 1.4.
-
-    Args:
-        path: any path.
-        s: (k,) increasing arc lengths [m], the grid on which it will be timed.
-
-    Raises:
-        RoughPath: with the place and the defect; NaN derivatives are refused too.
-    """
-    _, first, second = path.evaluate(s, 2)
-    count = places(path.pose_names)
-    unit = np.abs(np.linalg.norm(first[:, :count], axis=-1) - 1.0)
-    _require_small(unit, s, "the tangent's length minus 1", _UNIT)
-    explained = np.diff(s)[:, None] * (second[1:] + second[:-1]) / 2
-    jump = np.diff(first, axis=0) - explained
-    _require_small(np.linalg.norm(jump[:, :count], axis=-1), s, "a jump of the tangent", _JUMP)
-    for k, name in enumerate(path.pose_names[count:], start=count):
-        _require_small(np.abs(jump[:, k]), s, f"a jump of d {name} / ds [rad/m]", _JUMP * np.abs(first[:, k]).max())
-
-
-def _require_small(defect: Array, s: Array, what: str, bound: float) -> None:
-    bad = ~(defect <= bound)
-    if bad.any():
-        k = int(np.argmax(np.where(np.isnan(defect), np.inf, defect)))
-        raise RoughPath(float(s[k]), what, float(defect[k]), bound)

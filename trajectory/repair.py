@@ -18,9 +18,10 @@ from trajectory.errors import LimitsExceeded
 from trajectory.limits import Limits
 from trajectory.motion import motion_of
 from trajectory.path import Array
+from trajectory.sampling import integrals, parts_of
 from trajectory.timed import TimedMotion
 from trajectory.torque_terms import ByRate, torque_by_rate
-from trajectory.verification import Verification, integrals, sampling, verify
+from trajectory.verification import Verification, verify
 
 REPAIRABLE = 1.01  # the largest peak over limit that is repaired
 _POWERS = {
@@ -92,7 +93,8 @@ def _slowest(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: floa
     Raises:
         LimitsExceeded: what the torque keeps at rest is beyond a limit already.
     """
-    times, tool = timed.within(sampling(timed))
+    parts = parts_of(timed)
+    times, tool = parts.times(timed), parts.tool(timed)
     torque = torque_by_rate(robot, payload, tool.pose, tool.velocity, tool.acceleration)
     count = len(robot.actuator_names)
     peak, stall, fastest, rms = (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Protocol, Self
 
 import numpy as np
@@ -74,7 +75,7 @@ class TimedMotion(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class TimedPath:
-    """A path travelled by a time law.
+    """A path travelled by a time law. Its intervals are those of the law, cut where it passes the path's knots.
 
     Attributes:
         path: of the pose, by arc length.
@@ -92,6 +93,10 @@ class TimedPath:
         if not np.allclose(ends, (0.0, self.path.length), rtol=0.0, atol=_ROUNDING * self.path.length):
             raise InvalidValue("arc length of the time law", ends, f"(0, {self.path.length:.9g}) m, the path's")
 
+    @cached_property
+    def _cut(self) -> TimeLaw:
+        return self.law.cut(np.array(self.path.knots[1:-1]))
+
     @property
     def name(self) -> str:
         """Of the law."""
@@ -99,13 +104,13 @@ class TimedPath:
 
     @property
     def times(self) -> Array:
-        """(k + 1,) knots of the law [s]."""
-        return self.law.times
+        """(k + 1,) knots of the law, and when it passes the path's [s]."""
+        return self._cut.times
 
     @property
     def progress(self) -> Array:
         """(k + 1,) share of the arc length at each knot."""
-        return self.law.position / self.law.position[-1]
+        return self._cut.position / self._cut.position[-1]
 
     @property
     def duration(self) -> float:
@@ -119,16 +124,16 @@ class TimedPath:
 
     def at(self, t: Array) -> PoseMotion:
         """As `TimedMotion.at`."""
-        return pose_motion(self.path, self.law.at(t))
+        return pose_motion(self.path, self._cut.at(t))
 
     def within(self, fractions: Array) -> tuple[Array, PoseMotion]:
         """As `TimedMotion.within`."""
-        times, along = self.law.within(fractions)
+        times, along = self._cut.within(fractions)
         return times, pose_motion(self.path, along)
 
     def inside(self, interval: Array, since: Array) -> PoseMotion:
         """As `TimedMotion.inside`."""
-        return pose_motion(self.path, self.law.inside(interval, since))
+        return pose_motion(self.path, self._cut.inside(interval, since))
 
     def stretched(self, factor: float) -> TimedPath:
         """As `TimedMotion.stretched`."""
@@ -136,7 +141,7 @@ class TimedPath:
 
     def enclose_snap(self, low: Array, high: Array) -> Array:
         """As `TimedMotion.enclose_snap`."""
-        along, half = self.law.at(0.5 * low + 0.5 * high), (high - low) * (0.5 + _ROUNDING)
+        along, half = self._cut.at(0.5 * low + 0.5 * high), (high - low) * (0.5 + _ROUNDING)
         away = half * largest_speed(along, half)
         _, *derivatives = self.path.evaluate(along.position, 4)
         first_s, last_s = (np.clip(along.position + d, 0.0, self.path.length) for d in (-away, away))

@@ -12,6 +12,8 @@ from trajectory.knots import located, throughout
 from trajectory.path import Array
 
 _ROUNDING = 1e-9  # of the length or the speed
+_SAME = 1e-13  # of the length: closer knots are one
+_BISECTIONS = 60  # down to rounding
 
 
 class PathMotion(NamedTuple):
@@ -126,6 +128,36 @@ class TimeLaw:
             jerk=self.jerk / factor**3,
             snap=self.snap / factor**4,
         )
+
+    def cut(self, positions: Array) -> TimeLaw:
+        """The same law with knots where it passes these arc lengths (k,) too [m]; a knot that it has stays one."""
+        interval, since = self._passing(positions)
+        times = self.times[interval] + since
+        new = (times > self.times[interval]) & (times < self.times[interval + 1])
+        times, there = times[new], self.inside(interval[new], since[new])
+        at_knots, starts = (np.argsort(np.append(own, times), kind="stable") for own in (self.times, self.times[:-1]))
+        return replace(
+            self,
+            times=np.append(self.times, times)[at_knots],
+            position=np.append(self.position, there.position)[at_knots],
+            speed=np.append(self.speed, there.speed)[at_knots],
+            acceleration=np.append(self.acceleration, there.acceleration)[starts],
+            jerk=np.append(self.jerk, there.jerk)[starts],
+            snap=np.append(self.snap, there.snap)[starts],
+        )
+
+    def _passing(self, positions: Array) -> tuple[Array, Array]:
+        """The intervals in which it passes arc lengths away from its knots, and how long after each one's start."""
+        after = np.clip(np.searchsorted(self.position, positions), 1, self.position.size - 1)
+        apart = np.minimum(positions - self.position[after - 1], self.position[after] - positions)
+        away = apart > _SAME * np.ptp(self.position)
+        interval, positions = after[away] - 1, positions[away]
+        low, high = np.zeros(interval.size), np.diff(self.times)[interval]
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * low + 0.5 * high
+            before = self.inside(interval, middle).position < positions
+            low, high = np.where(before, middle, low), np.where(before, high, middle)
+        return interval, low
 
     def inside(self, interval: Array, since: Array) -> PathMotion:
         """In these intervals (...,), from 0, so long (...,) after each one's start [s]: its one-sided limits too."""

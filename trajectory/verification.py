@@ -1,4 +1,5 @@
-"""Independent verification of a timed motion: densely in time, between the gridpoints and on both sides of each knot.
+"""Independent verification of a timed motion: densely in time, between the gridpoints and on both sides of each knot,
+those of the law and those of the path.
 
 Nothing here uses the coefficients from which a law was made: the pose and its time derivatives come from the path and
 the law, the joints from the inverse model's derivatives, the torque from inverse dynamics. The joints' speed must also
@@ -22,20 +23,18 @@ from trajectory.limits import Limits
 from trajectory.motion import Motion, PoseMotion, motion_of
 from trajectory.path import Array
 from trajectory.proof import proved_use
+from trajectory.sampling import integrals, settled_parts, way_of
 from trajectory.timed import TimedMotion
 from trajectory.usage import Use, uses
 
-LEAST_PARTS = 10  # of each interval of the law
-LEAST_STEPS = 10_000  # of the whole path, about
 _SMOOTH = 1e-9  # of the largest s'': a smaller jump is rounding
-_LEAST_WAY = 1e-6  # of the joints [rad or m]: on a shorter one, rounding alone is beyond the tolerance
 _TOLERANCES = {  # SI, the closure in m^2; the two integrals are relative
     "start pose": 1e-9,
     "end pose": 1e-9,
     "start speed": 1e-9,
     "end speed": 1e-9,
     "closure": 1e-9,
-    "forward": 1e-6,
+    "change of assembly mode": 0.5,
     "kink of the path": 1e-7,
     "integral of acceleration": 1e-4,
     "integral of speed": 1e-6,
@@ -66,8 +65,8 @@ class Verification:
         duration: of the motion [s].
         peaks: of joint speed, joint acceleration, torque, tool speed, tool acceleration, joint jerk, rms torque; of
             joint position and torque at speed where they are limited.
-        residuals: of end poses, end speeds, loop closure and forward model, SI; of the joints' integrals, over the
-            largest speed and over the way of the joints.
+        residuals: of end poses, end speeds and loop closure, SI, and of the assembly mode; of the joints' integrals,
+            over the largest speed and over the way of the joints.
         reach: the worst limb's margin [m]; negative or NaN fails.
         rms_torque: (m,) over the whole duration [N m or N].
         rms_over_peak: (m,) each joint's RMS torque over its own peak; 0 where it bears none.
@@ -142,8 +141,8 @@ def verify(
     Raises:
         InvalidShape: another kind of pose.
     """
-    times, tool = timed.within(sampling(timed))
-    motion = motion_of(robot, tool, payload)
+    parts = settled_parts(robot, timed, _TOLERANCES["integral of acceleration"], _TOLERANCES["integral of speed"])
+    times, motion = parts.times(timed), motion_of(robot, parts.tool(timed), payload)
     if before is None:
         before = PoseMotion(timed.ends[0], *np.zeros((3, timed.ends.shape[1])))
     peaks, notes = _peaks(robot, times, motion, motion_of(robot, before, payload), limits)
@@ -161,13 +160,6 @@ def verify(
         notes=notes,
     )
     return found if found.failures else replace(found, proved=proved_use(robot, timed, limits, payload))
-
-
-def sampling(timed: TimedMotion) -> Array:
-    """(j,) fractions of each interval: at least ten parts, and a step at most about 1 / `LEAST_STEPS` of the way."""
-    share = np.diff(timed.progress).max()
-    parts = LEAST_PARTS * max(1, math.ceil(LEAST_STEPS / LEAST_PARTS * share))
-    return np.linspace(0.0, 1.0, parts + 1)
 
 
 def _peaks(
@@ -211,10 +203,6 @@ def _jump(times: Array, acceleration: Array, first: Array) -> tuple[float, float
 
 def _residuals(robot: Mechanism, timed: TimedMotion, motion: Motion, before: PoseMotion) -> dict[str, float]:
     pose, joints = motion.tool.pose, from_actuators(robot, motion.joints.position)
-    knots, knot_joints = pose[:, 0], joints[:, 0]
-    by_forward = robot.forward(knot_joints) - knots
-    turns = list(robot.rotations)
-    by_forward[..., turns] = np.remainder(by_forward[..., turns] + math.pi, 2 * math.pi) - math.pi
     first = timed.at(np.array(0.0))
     return {
         "start pose": _largest(first.pose - before.pose),
@@ -223,8 +211,19 @@ def _residuals(robot: Mechanism, timed: TimedMotion, motion: Motion, before: Pos
         "end speed": _largest(motion.tool.velocity[-1, -1]),
         "kink of the path": timed.kink,
         "closure": _largest(robot.closure_residual(pose, joints)),
-        "forward": _largest(by_forward),
+        "change of assembly mode": _changes(robot.jacobians(pose[:, 0])[1]),
     }
+
+
+def _changes(j_x: Array) -> float:
+    """How many of J_x (k, m, n) lie on another side of the singularities than the first; 0 with redundant joints.
+
+    A pose that moves continuously cannot change its assembly mode without passing a singularity.
+    """
+    if j_x.shape[-2] != j_x.shape[-1]:
+        return 0.0
+    sides = np.sign(np.linalg.det(j_x[np.isfinite(j_x).all(axis=(-2, -1))]))
+    return float(np.count_nonzero(sides != sides[:1]))
 
 
 def _integral_residuals(times: Array, motion: Motion) -> dict[str, float]:
@@ -234,17 +233,8 @@ def _integral_residuals(times: Array, motion: Motion) -> dict[str, float]:
     gap = joints.position[:, -1] - joints.position[0, 0] - integrals(times, joints.first).cumsum(axis=0)
     return {
         "integral of acceleration": _largest(jump) / _largest(joints.first),
-        "integral of speed": _largest(gap) / max(float(np.ptp(joints.position, axis=(0, 1)).max()), _LEAST_WAY),
+        "integral of speed": _largest(gap) / way_of(joints.position),
     }
-
-
-def integrals(times: Array, values: Array) -> Array:
-    """(k, j, m) values at equal parts of each interval -> (k, m) integrals over its time, by Simpson's rule."""
-    parts = values.shape[1] - 1
-    weights = np.full(parts + 1, 2.0)
-    weights[1::2] = 4.0
-    weights[[0, -1]] = 1.0
-    return np.einsum("nkm,k,n->nm", values, weights / (3 * parts), times[:, -1] - times[:, 0])
 
 
 def _largest(values: Array) -> float:

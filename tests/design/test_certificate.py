@@ -9,8 +9,18 @@ import numpy as np
 import pytest
 
 from design import Box, Cylinder, InvalidRegion, Region, best_bound, certify, worst_poses
-from kinematics import FviBounds, GoughStewart, Heli4, Mechanism, Peppermill, Redundant3T1R, threads
-from kinematics.errors import InvalidValue
+from kinematics import (
+    MECHANISMS,
+    FviBounds,
+    GoughStewart,
+    Heli4,
+    Mechanism,
+    Peppermill,
+    Planar3RRR,
+    Redundant3T1R,
+    threads,
+)
+from kinematics.errors import InvalidValue, LinkwrightError
 
 PI = math.pi
 CYLINDER = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-PI, PI))
@@ -311,3 +321,55 @@ def test_arms_that_touch_are_never_proved_apart(monkeypatch: pytest.MonkeyPatch)
     assert worst_poses(Redundant3T1R(), touching, "clearance", about=20_000).value < 1e-3
     for bound in (0.0, 0.002):
         assert certify(Redundant3T1R(), touching, "clearance", at_least=bound, most_boxes=4_000).status == "undecided"
+
+
+@pytest.mark.parametrize("turns", [0, 10, 1_000_000, 100_000_000])
+def test_millions_of_turns_away_the_same_is_proved(turns: int) -> None:
+    middle = turns * 2 * PI
+    region = Box(x=(-0.02, 0.02), y=(-0.02, 0.02), theta=(middle - 0.1, middle + 0.1))
+    assert certify(Planar3RRR(), region, "det_J_x", at_least=0.01, most_boxes=1_000).status == "proved"
+
+
+@pytest.mark.parametrize("x", [0.1, (0.1, 0.1), (0.0, 5e-324), (0.1, math.nextafter(0.1, 1.0)), (-1e-300, 1e-300)])
+@pytest.mark.parametrize("at_least", [0.3, 1e-300, 0.0, -0.0, -1e300])
+def test_a_region_of_hardly_any_width_is_decided_as_a_pose_is(x: float | tuple[float, float], at_least: float) -> None:
+    assert certify(Heli4(), Box(x=x, y=0.0, z=-0.7, theta=0.0), "J_q", at_least=at_least).status == "proved"
+    assert certify(Heli4(), Box(x=x, y=0.0, z=-0.7, theta=0.0), "J_q", at_least=1e300).status == "refuted"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("mechanism", list(MECHANISMS.values()), ids=list(MECHANISMS))
+def test_no_answer_about_a_random_robot_is_false(mechanism: type[Mechanism]) -> None:
+    """Random geometries, regions and margins, many of them partly out of reach."""
+    rng = np.random.default_rng(77)
+    for _ in range(60):
+        usual = mechanism()
+        vector = usual.geometry.vector()
+        try:
+            geometry = mechanism.Geometry.from_vector(vector * rng.uniform(0.8, 1.25, len(vector)))
+            robot = mechanism(geometry)
+        except LinkwrightError:
+            continue
+        middle = np.array(robot.home) + rng.normal(0.0, 0.15, len(robot.home))
+        half = 10.0 ** rng.uniform(-3.0, -1.0, len(middle)) * rng.choice([0.0, 1.0], len(middle), p=[0.2, 0.8])
+        region = Box(
+            **{n: (float(m - h), float(m + h)) for n, m, h in zip(robot.pose_names, middle, half, strict=True)}
+        )
+        poses = region.random(robot.pose_names, 5_000, rng)
+        margin = str(rng.choice(robot.margins))
+        values = robot.margin(margin, poses)
+        reached = robot.margin("reach", poses) >= 0.0
+        lowest = float(np.nanmin(values)) if np.isfinite(values).any() else 0.5
+        bound = lowest + float(rng.choice([-1.0, 1.0])) * 10.0 ** rng.uniform(-9.0, -0.5)
+        found = certify(robot, region, margin, at_least=bound, most_boxes=5_000)
+        told = (mechanism.__name__, margin, bound, region, geometry)
+        if found.status == "proved":
+            assert reached.all(), told
+            assert (values >= bound - 1e-12 * max(1.0, abs(bound))).all(), told
+        if found.status == "refuted":
+            pose = found.counterexample
+            assert pose is not None
+            assert region.contains(pose, robot.pose_names), told
+            value = float(robot.margin(margin, pose))
+            assert found.within_reach == bool(robot.margin("reach", pose) >= 0.0), told
+            assert not found.within_reach or value < bound, told

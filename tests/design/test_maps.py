@@ -220,6 +220,16 @@ def test_where_nothing_is_seen_the_finest_grid_was_looked_at_and_says_its_step()
     assert found.step == pytest.approx((2.0 / (FINEST - 1),) * 2)
 
 
+def test_a_map_of_reach_counts_what_is_in_reach_whatever_the_bound() -> None:
+    robot, section = Heli4(), Section(Box(x=(-1.5, 1.5), y=(-1.5, 1.5), z=-0.7, theta=0.0), ("x", "y"))
+    index = index_of(robot, "reach")
+    areas = [level_set(index, section, NAMES, bound).figures.area for bound in (None, -1.0, 0.0)]
+    assert areas == [areas[0]] * 3
+    poses = section.region.random(NAMES, 100_000, np.random.default_rng(3))
+    share = float((robot.margin("reach", poses) >= 0.0).mean())
+    assert areas[0] == pytest.approx(9.0 * share, rel=0.02)
+
+
 def test_a_plane_out_of_reach_is_empty_and_so_is_its_boundary() -> None:
     beyond = Cylinder(radius=0.5, z=(2.5, 2.5), theta=(0.5, 0.5))
     found = level_set(index_of(Heli4(), "fvi"), Section(beyond, ("x", "y")), NAMES, None)

@@ -78,6 +78,8 @@ def flipped(certificate: Certificate) -> Certificate:
         (lambda c: replace(c, characteristic_length=0.01), "characteristic length"),
         (lambda c: replace(c, mechanism="Peppermill"), "mechanism"),
         (lambda c: replace(c, status="refuted", counterexample=np.array([0, 0, -0.73, 0])), "does not refute"),
+        (lambda c: replace(c, status="refuted", counterexample=np.zeros(3)), "has 3 numbers; expected 4"),
+        (lambda c: replace(c, edition=1), "edition"),
         (lambda c: replace(c, status="undecided"), "decides nothing"),
         (lambda c: replace(c, boxes=c.boxes + 1), "boxes"),
         (lambda c: replace(c, at_least=0.39), "bound"),

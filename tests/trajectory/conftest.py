@@ -20,6 +20,7 @@ class Straight:
     direction: tuple[float, float, float, float] = (0.0, 0.0, 1.0, 0.0)
     length: float = 0.1
     pose_names: tuple[str, ...] = ("x", "y", "z", "theta")
+    stops: None = None
 
     def evaluate(self, s: np.ndarray, order: int = 3) -> tuple[np.ndarray, ...]:
         s = np.asarray(s, dtype=float)[..., None]
@@ -44,6 +45,7 @@ class Joined:
 
     first: Path
     second: Path
+    stops: None = None
 
     @property
     def length(self) -> float:

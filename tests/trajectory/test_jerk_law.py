@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from trajectory.jerk_law import _Problem
+from trajectory.jerk_start import Start
 
 from kinematics import Heli4, InvalidValue, Mechanism, Peppermill, Redundant3T1R, UnreachablePose
 from kinematics.dynamics import inverse_dynamics
@@ -26,8 +28,6 @@ from trajectory import (
     there_and_back,
     time_optimal,
 )
-from trajectory.jerk_law import _Problem
-from trajectory.jerk_start import Start
 
 SMOOTH = Limits(speed=20.0, torque=127.0, jerk=1e5)
 RAIL = Redundant3T1R()  # its rails lie along x: a move along x moves every joint as far
@@ -253,7 +253,7 @@ def test_where_so_many_knots_have_no_answer_it_is_one_on_fewer(
 
     monkeypatch.setattr(_Problem, "solved", fails_on_many)
     fewer = repair(robot, jerk_limited(robot, path, SMOOTH, 1.0), SMOOTH, 1.0)
-    assert fewer.motion.times.size == 101
+    assert fewer.motion.law.times.size == 101
     assert mended.motion.duration < fewer.motion.duration < 1.002 * mended.motion.duration
 
 

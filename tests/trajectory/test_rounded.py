@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinematics import InvalidValue
-from trajectory import InvalidPath, Reversed, RoundedPath
+from trajectory import InvalidPath, Reversed, RoundedPath, pieces
 
 NAMES = ("x", "y", "z", "theta")
 POSES = (
@@ -135,19 +135,19 @@ def test_a_corner_without_turn_is_a_straight_line() -> None:
     s = np.linspace(0.0, 0.3, 301)
     assert path.length == pytest.approx(0.3, rel=1e-15)
     assert np.abs(path.evaluate(s, 0)[0][:, 0] - s).max() < 1e-16
-    assert path.split() == (path,)
+    assert pieces(path) == (path,)
 
 
 def test_it_is_split_at_corners_without_a_blend_and_the_parts_meet() -> None:
-    parts = SQUARE.split()
+    parts = pieces(SQUARE)
     assert [part.length for part in parts] == pytest.approx([0.1, 0.1, 0.1 * math.sqrt(2)], rel=1e-15)
     wanted = [(1, 0), (0, 1), (-math.sqrt(0.5), -math.sqrt(0.5))]
     for k, (part, tangent) in enumerate(zip(parts, wanted, strict=True)):
         pose, first = part.evaluate(np.linspace(0.0, part.length, 11), 1)
         assert pose[[0, -1]] == pytest.approx(np.array(SQUARE.poses[k : k + 2], dtype=float), abs=1e-14)
         assert np.abs(first[:, :2] - tangent).max() < 1e-15
-        assert part.split() == (part,)
-    back = Reversed(SQUARE).split()
+        assert pieces(part) == (part,)
+    back = pieces(Reversed(SQUARE))
     for there, again in zip(parts, reversed(back), strict=True):
         s = np.linspace(0.0, there.length, 7)
         assert np.abs(there.evaluate(s, 1)[1] + again.evaluate(there.length - s, 1)[1]).max() < 1e-12
@@ -155,7 +155,7 @@ def test_it_is_split_at_corners_without_a_blend_and_the_parts_meet() -> None:
 
 def test_a_reversal_is_a_stop() -> None:
     path = RoundedPath(NAMES, ((0, 0, 0, 0), (0, 0, 0.1, 1), (0, 0, 0, 0)), (0.0,))
-    up, down = path.split()
+    up, down = pieces(path)
     assert np.array_equal(up.evaluate(np.array(0.1), 1)[1][:3], [0, 0, 1])
     assert np.array_equal(down.evaluate(np.array(0.0), 1)[1][:3], [0, 0, -1])
 
@@ -183,7 +183,10 @@ def test_any_path_stays_within_the_bounds_that_enclose_it(seed: int, count: int,
 @pytest.mark.parametrize(
     ("poses", "blends", "pose", "field"),
     [
-        (((0, 0, 0, 0), (0, 0, 0, 1)), (), 2, "place"),
+        (((0, 0, 0, 1), (0, 0, 0, 1)), (), 2, "place"),
+        (((1, 0, 0, 0), (1, 0, 1e-14, 1e-14)), (), 2, "place"),
+        (((0, 0, 0, 0), (0, 0, 1, None), (0, 0, 1, 1)), (0,), 2, "theta"),
+        (((0, 0, 0, 0), (0, 0, 1, 0), (0, 0, 1, 1)), (0.1,), 2, "blend"),
         (((0, 0, 0, None), (0, 0, 1, 1)), (), 1, "theta"),
         (((0, 0, 0, 0), (0, None, 1, 1), (1, 1, 1, 1)), (0.1,), 2, "y"),
         (((0, 0, 0, 0), (0, 0, math.nan, 1)), (), 2, "z"),

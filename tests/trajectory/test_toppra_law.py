@@ -8,8 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kinematics import Heli4, InvalidValue, UnreachablePose
+from kinematics import Delta, Heli4, InvalidValue, UnreachablePose
 from kinematics.dynamics import inverse_dynamics
+from tests.bench.timing.cases import reference
+from tests.bench.timing.toppra_peer import ExactPath, problem_of, solved
 from trajectory import (
     AdeptCycle,
     Limits,
@@ -18,6 +20,7 @@ from trajectory import (
     RoundedPath,
     TimedPath,
     TimingFailed,
+    pieces,
     time_optimal,
     verify,
 )
@@ -29,12 +32,33 @@ def test_the_reference_half_cycle_takes_127_ms(timed: TimedPath) -> None:
     assert timed.duration == pytest.approx(0.1274, abs=1e-4)
 
 
-def test_the_half_cycle_converges_with_the_grid(
-    robot: Heli4, path: AdeptCycle, limits: Limits, timed: TimedPath
+@pytest.mark.parametrize("intervals", [20, 400, 3000])
+def test_the_answer_does_not_hang_on_the_first_grid(
+    robot: Heli4, path: AdeptCycle, limits: Limits, timed: TimedPath, intervals: int
 ) -> None:
-    coarse, fine = (time_optimal(robot, path, limits, 1.0, n).duration for n in (1000, 4000))
-    first, second = coarse - timed.duration, timed.duration - fine
-    assert 0 < second < 0.7 * first < 1e-4
+    found = time_optimal(robot, path, limits, 1.0, intervals)
+    assert found.duration == pytest.approx(timed.duration, rel=3e-4)
+    assert max(verify(robot, found, limits, 1.0).peak_over_limit.values()) < 1.0005
+
+
+def test_toppra_takes_as_long_on_a_fine_grid(timed: TimedPath) -> None:
+    case = reference()
+    peer = solved(case, problem_of(case, ExactPath(case.path), 8000))
+    assert timed.duration == pytest.approx(peer.duration, rel=3e-4)
+
+
+@pytest.mark.parametrize("blend", [1e-6, 2e-4])
+def test_a_corner_of_any_size_is_passed_within_the_limits(blend: float) -> None:
+    """The grid is refined in the corner alone: ever smaller ones cost no more than stopping there."""
+    robot, limits = Delta(), Limits(speed=20.0, acceleration=400.0, torque=127.0)
+    legs = ((0.0, 0.0, -0.75), (0.1, 0.0, -0.75), (0.1, 0.1, -0.75))
+    rounded = time_optimal(robot, RoundedPath(robot.pose_names, legs, (blend,)), limits, 0.5)
+    stopped = sum(
+        time_optimal(robot, part, limits, 0.5).duration for part in pieces(RoundedPath(robot.pose_names, legs, (0.0,)))
+    )
+    assert rounded.law.times.size < 12_000
+    assert max(verify(robot, rounded, limits, 0.5).peak_over_limit.values()) < 1.0005
+    assert 0.9 * stopped < rounded.duration < stopped
 
 
 def test_a_straight_line_under_a_tool_acceleration_cap_is_bang_bang(robot: Heli4, straight: type) -> None:
@@ -126,7 +150,7 @@ def test_a_path_by_another_parameter_is_refused_before_timing(robot: Heli4, stra
         ({"jerk": 1e5}, 2000, 1.0, "jerk"),
         ({"rms_torque": 76.0}, 2000, 1.0, "rms_torque"),
         ({"stall_torque": 150.0, "no_load_speed": 25.0}, 2000, 1.0, "stall_torque"),
-        ({}, 999, 1.0, "intervals"),
+        ({}, 0, 1.0, "intervals"),
         ({}, 2000, -1.0, "payload"),
         ({}, 2000, math.nan, "payload"),
         ({"torque": (127.0, 127.0)}, 2000, 1.0, "torque"),

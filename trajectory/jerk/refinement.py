@@ -1,0 +1,206 @@
+"""From a slow motion to the fastest one: searches on finer and finer knots, each from the motion before it.
+
+A search keeps the rows at its stations. What its answer exceeds between them tightens the rows around it, and the
+search goes on; how much time that costs says whether the knots are close enough, and if not there are twice as many.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from kinematics import Mechanism
+from trajectory.errors import TimingFailed
+from trajectory.jerk.between import used
+from trajectory.jerk.mesh import first_mesh, next_mesh, piece_edges
+from trajectory.jerk.motion import SquaredRate
+from trajectory.jerk.refusal import asked_of, refused
+from trajectory.jerk.rows import PARTS, Array, Rows, rows_of, uniform_rate, weight_use
+from trajectory.jerk.search import SOLVED, search
+from trajectory.jerk.stations import keeping, row_count
+from trajectory.limits import Limits
+from trajectory.path import Path
+
+_COARSE = 4  # times fewer intervals at first
+_IN_PIECE = 8  # intervals, at least, for each piece of the path on average
+_DOUBLINGS = 6
+_STANDS = 2e-4  # of the time: what tightening may cost on knots that are close enough
+_ROUNDS = 4  # of tightening
+_NEARLY, _OVER = 1e-3, 1e-2  # over a row: what asks for closer knots, and what is no answer
+_KEPT = 5e-5  # over a row that is left to the end
+_ROUGHLY, _CLOSELY = 1e-2, 1e-5  # of the time: how far from the least one a search may end
+_FAR, _NEAR, _SAME = 1e-4, 1e-5, 1e-6  # barrier of a search that starts from a slow, a good, its own motion
+_STEPS = 400
+_LITTLE = 0.1  # share of a motion's squared rate: with less it is a poor start
+_PRESSED = (1e-2, 1.0)  # barriers of further tries
+_HELD = 1.1  # by what more than needed rows are loosened
+_INSIDE = 1e-2  # barrier where a motion far from the rows is sought
+_RAISED = 1e-3  # of the largest x, where a motion would stand
+_PLACES = 12  # of each interval, where it is looked at
+_PRICE = 1e3  # of what loosens the forces, in units of the slow motion's time
+_FASTEST = 1e6  # of x in units of the slow motion's, where nothing bounds it
+_SLOWER = 0.98  # of the rate that just keeps every row
+
+
+class Problem(NamedTuple):
+    """What is asked, as `jerk_limited`."""
+
+    robot: Mechanism
+    path: Path
+    limits: Limits
+    payload: float
+
+
+class Answer(NamedTuple):
+    """A motion, its rows, its unit of time [s], and the most that it uses of a row between the stations."""
+
+    motion: SquaredRate
+    rows: Rows
+    unit: float
+    time: float
+    use: float
+
+    @property
+    def sizes(self) -> Array:
+        """(n,) of the intervals."""
+        return np.diff(self.motion.knots)
+
+
+class _Duals(NamedTuple):
+    rows: Array
+    means: Array
+
+
+class _Found(NamedTuple):
+    """What a search ended with: a motion in any case, the least one where it converged."""
+
+    answer: Answer
+    duals: _Duals
+    converged: bool
+
+
+def fastest(problem: Problem, intervals: int) -> Answer:
+    """The fastest motion on so many intervals, or on as many as it needs.
+
+    Raises:
+        TimingFailed: no motion keeps the limits, and why; or the search did not converge.
+    """
+    edges = piece_edges(problem.path)
+    asked = max(intervals, _IN_PIECE * (edges.size - 1))
+    found = _first(problem, first_mesh(edges, asked // _COARSE))
+    for _ in range(_DOUBLINGS + 1):
+        before = found.answer
+        over = np.clip(_uses(before.motion, before.rows).max(axis=1) - 1.0, 0.0, 1.0)
+        knots = next_mesh(edges, before.motion, over, asked)
+        rows = _in_unit(rows_of(*problem, knots), before.unit)
+        start = SquaredRate(knots, before.motion.at(knots))
+        finer = _searched(start, rows, before.unit, found.duals.means, _NEAR, _CLOSELY)
+        if finer is None:
+            break
+        found, asked = finer, 2 * asked
+        if found.converged:
+            answer = _tightened(found.answer, found.duals)
+            if answer.use <= 1.0 + _NEARLY and answer.time <= (1.0 + _STANDS) * found.answer.time:
+                return answer
+    answer = _tightened(found.answer, found.duals)
+    if not found.converged or answer.use > 1.0 + _OVER:
+        what = f"the search did not settle on {answer.sizes.size} intervals, peak over limit {answer.use:.6g}"
+        raise TimingFailed("jerk", asked_of(*problem), what)
+    return answer
+
+
+def _first(problem: Problem, knots: Array) -> _Found:
+    """On few knots, from the motion of one rate, which the forces may have to be loosened for."""
+    rows = rows_of(*problem, knots)
+    start = SquaredRate(knots, np.tile([1.0, 0.0], knots.size))
+    unit = 1.0 / (_SLOWER * uniform_rate(rows, max(1.0, _HELD * weight_use(rows))))
+    found = _searched(start, _in_unit(rows, unit), unit, np.zeros(rows.mean.shape[1]), _FAR, _ROUGHLY)
+    if found is None:
+        raise refused(*problem)
+    return found
+
+
+def _in_unit(rows: Rows, unit: float) -> Rows:
+    rows = rows.in_unit(unit)
+    return rows._replace(most=np.minimum(rows.most, _FASTEST))
+
+
+def _searched(
+    start: SquaredRate, rows: Rows, unit: float, means: Array, barrier: float, tolerance: float
+) -> _Found | None:
+    """From a motion, slowed down until it keeps every row; None where no motion was found that does."""
+    tight, ones, sizes = _untightened(rows, start)
+    y = _kept(start, rows, tight)
+    if y is None:
+        return None
+    for pressed in (barrier, *_PRESSED):
+        duals, found = _Duals(_no_duals(sizes.size, rows), means.copy()), y.copy()
+        status, _, time, _ = search(sizes, rows, tight, ones, found, *duals, pressed, tolerance, _STEPS, 0.0, 0.0)
+        if status == SOLVED:
+            break
+    motion = SquaredRate(start.knots, found)
+    return _Found(Answer(motion, rows, unit, time, float(_uses(motion, rows).max())), duals, status == SOLVED)
+
+
+def _untightened(rows: Rows, motion: SquaredRate) -> tuple[Array, Array, Array]:
+    """What rows and means are kept to at first, and the sizes of the intervals."""
+    sizes = np.diff(motion.knots)
+    return np.ones((sizes.size, rows.tight_count)), np.ones(rows.mean.shape[1]), sizes
+
+
+def _kept(start: SquaredRate, rows: Rows, tight: Array) -> Array | None:
+    """The start slowed down until it keeps the rows or, where that is not enough, another motion; None without one.
+
+    Where the drives cannot hold the weight, slowing down does not help: the rows are loosened until the start keeps
+    them, and drawn in again. Where it helps too late, a motion found so is the better start.
+    """
+    _, ones, sizes = _untightened(rows, start)
+    share = keeping(sizes, rows, tight, ones, start.values)
+    if share > _LITTLE:
+        return share * start.values
+    moving = _never_at_rest(start)
+    loose = _HELD * float((_uses(moving, rows) - tight).max()) + _HELD - 1.0
+    y, duals = moving.values.copy(), _Duals(_no_duals(sizes.size, rows), np.zeros(ones.size))
+    status, *_ = search(sizes, rows, tight, ones, y, *duals, _INSIDE, 0.0, _STEPS, loose, _PRICE)
+    if status == SOLVED:
+        return y
+    return share * start.values if share else None
+
+
+def _never_at_rest(motion: SquaredRate) -> SquaredRate:
+    """With x raised alike everywhere until it is above 0 between the knots too."""
+    x = motion.finer(_PLACES).values[::2]
+    raised = 0.0 if x.min() > 0.0 else float(_RAISED * x.max() - 2.0 * x.min())
+    return motion._replace(values=motion.values + np.tile([raised, 0.0], motion.knots.size))
+
+
+def _no_duals(intervals: int, rows: Rows) -> Array:
+    return np.zeros((intervals, PARTS + 1, row_count(rows)))
+
+
+def _uses(motion: SquaredRate, rows: Rows) -> Array:
+    found = np.empty((motion.knots.size - 1, rows.tight_count))
+    used(np.diff(motion.knots), motion.values, rows, found)
+    return found
+
+
+def _tightened(answer: Answer, duals: _Duals) -> Answer:
+    """On the same knots, until the rows are kept between the stations too, or nearly."""
+    motion, rows, sizes = answer.motion, answer.rows, answer.sizes
+    use, means = _uses(motion, rows), np.ones(rows.mean.shape[1])
+    tight, best = np.ones_like(use), answer
+    for _ in range(_ROUNDS):
+        if best.use <= 1.0 + _KEPT:
+            break
+        tight /= np.where(use > 1.0, use * (1.0 + _KEPT / 2), 1.0)
+        if (y := _kept(motion, rows, tight)) is None:
+            break
+        status, _, time, _ = search(sizes, rows, tight, means, y, *duals, _SAME, _CLOSELY, _STEPS, 0.0, 0.0)
+        if status != SOLVED:
+            break
+        motion = SquaredRate(motion.knots, y)
+        use = _uses(motion, rows)
+        if use.max() < best.use:
+            best = answer._replace(motion=motion, time=time, use=float(use.max()))
+    return best
