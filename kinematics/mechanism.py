@@ -88,6 +88,10 @@ class Mechanism(Definition):
     def __hash__(self) -> int:
         return self._hash
 
+    def with_inertia(self, inertia: InertiaRecord) -> Self:
+        """The same robot with other masses and drives."""
+        return type(self)(self.geometry, inertia, self.ranges, *self._given)
+
     def with_geometry(self, geometry: GeometryRecord) -> Self:
         """The same robot with another geometry; a home that was given stays."""
         return type(self)(geometry, self.inertia, self.ranges, *self._given)

@@ -128,7 +128,7 @@ def write_model(robot: Mechanism, study: Study, rod_middle: float | None, file: 
         path, payload = setup.path_of(study.trajectory, robot.pose_names), study.trajectory.payload
         (pose,) = path.evaluate(np.array(0.0), 0)
     if rod_middle is not None:
-        robot = type(robot)(robot.geometry, replace(robot.inertia, rod_middle=rod_middle), robot.ranges)
+        robot = robot.with_inertia(replace(robot.inertia, rod_middle=rod_middle))
     text = mjcf(robot, pose, payload)
     require_free(file, force, text)
     return write_files(file.parent, {file.name: text})[0]
