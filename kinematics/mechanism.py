@@ -100,6 +100,10 @@ class Mechanism(Definition):
         """SHA-256 of `conditions`, to tell which robot a proof was made for."""
         return hashlib.sha256(json.dumps(self.conditions(), sort_keys=True).encode()).hexdigest()
 
+    def with_inertia(self, inertia: InertiaRecord) -> Self:
+        """The same robot with other masses and drives."""
+        return type(self)(self.geometry, inertia, self.ranges, *self._given)
+
     def with_geometry(self, geometry: GeometryRecord) -> Self:
         """The same robot with another geometry; a home that was given stays."""
         return type(self)(geometry, self.inertia, self.ranges, *self._given)

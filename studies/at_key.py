@@ -13,6 +13,7 @@ from trajectory import LimitsExceeded, PathBeyondLimit, PathRefused, RoughPath, 
 
 _RECORDS: dict[str, KeyPath] = {
     "Limits": ("trajectory", "limits"),
+    "Trajectory": ("trajectory",),
     "Drive": ("trajectory", "drive"),
     "DriveTrain": ("inertia", "drive_train"),
 }

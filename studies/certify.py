@@ -10,7 +10,6 @@ from typing import Any
 
 from design import Certificate, Region, best_bound, certify, replay, worst_poses
 from design.budget import Budget
-from design.exchange import Progress
 from design.nlp import Problem
 from design.search import WorstPoses
 from kinematics import Mechanism

@@ -120,9 +120,9 @@ def trajectory(
     from kinematics.errors import InvalidValue
     from studies import console
     from studies.at_key import told_at_key
+    from studies.cycle_stage import require_on_cycle, time_cycle
     from studies.output_folder import Written
     from studies.outputs import write_setpoints
-    from studies.pipeline import require_on_cycle, time_cycle
     from studies.schema_trajectory import LAWS
     from studies.setup import drive_file_names
     from studies.stages import stage

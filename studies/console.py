@@ -17,8 +17,9 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from studies.certify import Proof, Question
+from studies.cycle_stage import Timing
 from studies.output_folder import Written
-from studies.pipeline import Outcome, Timing
+from studies.pipeline import Outcome
 from studies.rows import Row
 from studies.stages import Lasting
 from studies.tables import PROOFS, margin_columns, margin_rows, proof_rows

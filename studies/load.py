@@ -125,10 +125,13 @@ def _invalid(error: ValidationError, table: Table) -> Iterator[KeyPath]:
 
 def _problems(file: TomlFile, table: Table, conversion: Conversion, wrong: set[KeyPath]) -> list[Problem]:
     problems = [file.problem(f.path, f.found, f.expected) for f in conversion.findings]
+    told = {finding.path for finding in conversion.findings}
     for path in sorted(wrong, key=str):
         if path in conversion.reported and path not in conversion.spelling:
             continue  # a misspelt key is not missing as well
         spelling = conversion.spelling.get(path, path)
+        if spelling in told:
+            continue
         try:
             value: Any = file.value(spelling)
             found = spelled(value)

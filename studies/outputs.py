@@ -14,9 +14,10 @@ from kinematics.mjcf import mjcf
 from studies import setup
 from studies.certify import Proof, Question, claims_of
 from studies.committed_proofs import file_of, proof_files
+from studies.cycle_stage import Timing
 from studies.optimum import FILE, optimum_of
 from studies.output_folder import Contents, OutputFolder, Written, require_free
-from studies.pipeline import Outcome, Timing
+from studies.pipeline import Outcome
 from studies.questions import digest_of
 from studies.report import html_report, pictures_of
 from studies.schema import Study
@@ -127,7 +128,7 @@ def write_model(robot: Mechanism, study: Study, rod_middle: float | None, file: 
         path, payload = setup.path_of(study.trajectory, robot.pose_names), study.trajectory.payload
         (pose,) = path.evaluate(np.array(0.0), 0)
     if rod_middle is not None:
-        robot = type(robot)(robot.geometry, replace(robot.inertia, rod_middle=rod_middle), robot.ranges)
+        robot = robot.with_inertia(replace(robot.inertia, rod_middle=rod_middle))
     text = mjcf(robot, pose, payload)
     require_free(file, force, text)
     return write_files(file.parent, {file.name: text})[0]

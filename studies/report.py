@@ -12,7 +12,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from kinematics.motion import JointMotion
 from studies import plots
-from studies.pipeline import Outcome, Timing
+from studies.cycle_stage import Timing
+from studies.pipeline import Outcome
 from studies.tables import PROOFS, margin_columns, margin_rows, proof_rows
 from trajectory.motion import motion_of
 

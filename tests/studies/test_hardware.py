@@ -13,13 +13,13 @@ import pytest
 from kinematics import MECHANISMS, DriveTrain, GoughStewart, Heli4
 from kinematics.bodies import UNIFORM
 from studies.certify import question_of
+from studies.cycle_stage import time_cycle
 from studies.hardware import hardware_tables
 from studies.load import load_study
 from studies.locate import FOLDER
 from studies.optimum import committed, read_optimum
 from studies.output_folder import OutputFolder
 from studies.outputs import write_model, write_setpoints
-from studies.pipeline import time_cycle
 from studies.questions import design_question, digest_of
 from studies.schema import Study
 from studies.setup import robot_of

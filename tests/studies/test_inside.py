@@ -11,10 +11,10 @@ import pytest
 
 import trajectory.free_law
 from design import Box, Cylinder, Region
+from studies.cycle_stage import time_cycle
 from studies.errors import RequirementFailed
 from studies.inside import TOLERANCE, leaving
 from studies.load import load_study
-from studies.pipeline import time_cycle
 from studies.setup import limits_of, path_of, region_of, robot_of
 from tests.studies.command_line import SMALL
 from trajectory import AdeptCycle, PoseSpline, RoundedPath, free_motion

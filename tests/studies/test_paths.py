@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from studies.cycle_stage import time_cycle
 from studies.errors import StudyError
 from studies.load import load_study
-from studies.pipeline import time_cycle
 from studies.setup import path_of, robot_of
 from trajectory import AdeptCycle, RoundedPath, WaypointFileError
 
@@ -127,6 +127,16 @@ def test_a_study_s_waypoints_are_timed_with_a_stop_at_the_corner_without_a_blend
     assert 0.99 < figures["peak_over_limit"]["torque"] <= 1.0
     assert timing.setpoints.pose[0] == pytest.approx(timing.setpoints.pose[-1], abs=1e-9)
     assert timing.setpoints.header["path blends"] == [0.0]
+
+
+def test_a_way_that_ends_where_it_starts_is_a_closed_cycle_and_no_half(tmp_path: Path) -> None:
+    corners = ((-0.05, -0.8), (0.05, -0.8), (-0.05, -0.8))
+    rows = "".join(f"[[trajectory.path.waypoint]]\nx = {x}\ny = 0\nz = {z}\ntheta = 0\n" for x, z in corners)
+    study = load_study(written(tmp_path, f"[trajectory.path]\npayload = 1.0\n{rows}"))
+    timing = time_cycle(study, robot_of(study))
+    figures = timing.figures()
+    assert "half_cycle" not in figures
+    assert figures["closed_cycle"] == sum(piece.duration for piece in timing.cycle.pieces)
 
 
 @pytest.mark.parametrize(
