@@ -29,7 +29,7 @@ from trajectory.toppra_law import time_optimal
 _AT = (0.0, 0.5)  # where in an interval speed, acceleration, torque are kept
 _ARCH_AT = 480  # instants, about, at which the tool stays outside the arch: a tenth of a blend apart at most
 _PROOF = 100_000  # parts of the motion, over each of which the arch is proved to be kept
-_SLOWER = 1.1  # the guess, over the time-optimal law
+_SLOWER = 1.15  # the guess, over the time-optimal law
 _ROOM = 0.25  # of the path's extent, by which the pose may leave the path's box
 
 
