@@ -8,7 +8,6 @@ given at a point (in the middle of its corner) and never leaves the range of the
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 

@@ -8,6 +8,7 @@ from kinematics import InvalidValue, Mechanism
 from trajectory.at_rest import require_possible
 from trajectory.jerk.motion import law_in_time
 from trajectory.jerk.refinement import Answer, Problem, fastest
+from trajectory.jerk.refusal import refused
 from trajectory.jerk.rows import PARTS, Array, smoothstep
 from trajectory.limits import Limits
 from trajectory.path import Path, require_poses_of
@@ -42,14 +43,18 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     require_poses_of(robot, path)
     require_smooth(path)
     require_possible(robot, path, limits, payload, np.linspace(0.0, path.length, _CHECKED + 1))
-    return timed(path, fastest(Problem(robot, path, limits, payload), intervals))
+    problem = Problem(robot, path, limits, payload)
+    answer = fastest(problem, intervals)
+    if (found := timed(path, answer)) is None:
+        raise refused(*problem, answer.sizes.size)
+    return found
 
 
-def timed(path: Path, answer: Answer) -> TimedPath:
-    """The motion in time, slowed down by the little that it is over a limit."""
+def timed(path: Path, answer: Answer) -> TimedPath | None:
+    """The motion in time, slowed down by the little that it is over a limit; None where rounding hides its law."""
     slower = max(1.0, answer.use) ** 0.5
     law = law_in_time(answer.motion, path.length, answer.unit * slower, _per_jerk(answer, path.length))
-    return TimedPath(path, law)
+    return None if law is None else TimedPath(path, law)
 
 
 def _per_jerk(answer: Answer, length: float) -> Array:

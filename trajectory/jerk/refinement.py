@@ -11,11 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics import Mechanism
-from trajectory.errors import TimingFailed
 from trajectory.jerk.between import used
 from trajectory.jerk.mesh import first_mesh, next_mesh, piece_edges
 from trajectory.jerk.motion import SquaredRate
-from trajectory.jerk.refusal import asked_of, refused
+from trajectory.jerk.refusal import refused
 from trajectory.jerk.rows import PARTS, Array, Rows, rows_of, uniform_rate, weight_use
 from trajectory.jerk.search import SOLVED, search
 from trajectory.jerk.stations import keeping, row_count
@@ -26,6 +25,7 @@ _COARSE = 4  # times fewer intervals at first
 _IN_PIECE = 8  # intervals, at least, for each piece of the path on average
 _DOUBLINGS = 5
 _STANDS = 2e-4  # of the time: what tightening may cost on knots that are close enough
+_MOST = 16_000  # intervals, where a motion was found on fewer
 _ROUNDS = 4  # of tightening
 _NEARLY = 1e-3  # over a row: more is no answer
 _KEPT = 5e-5  # over a row that is left to the end
@@ -99,13 +99,13 @@ def fastest(problem: Problem, intervals: int) -> Answer:
         if found.converged and answer.use <= 1.0 + _NEARLY:
             gained = best is None or answer.time < (1.0 - _STANDS) * best.time
             best = answer if gained or best is None else best
-            if answer.time <= (1.0 + _STANDS) * found.answer.time or not gained:
+            stands = answer.time <= (1.0 + _STANDS) * found.answer.time
+            if stands or not gained or asked > _MOST:
                 break
         elif best is not None:
             break  # so fine that the search fails: the knots before were fine enough
     if best is None:
-        what = f"the search did not settle on {found.answer.sizes.size} intervals"
-        raise TimingFailed("jerk", asked_of(*problem), what)
+        raise refused(*problem, found.answer.sizes.size)
     return best
 
 
@@ -125,7 +125,7 @@ def _first(problem: Problem, knots: Array) -> _Found:
     unit = 1.0 / (_SLOWER * uniform_rate(rows, max(1.0, _HELD * weight_use(rows))))
     found = _searched(start, _in_unit(rows, unit), unit, np.zeros(rows.mean.shape[1]), _FAR, _ROUGHLY)
     if found is None:
-        raise refused(*problem)
+        raise refused(*problem, knots.size - 1)
     return found
 
 

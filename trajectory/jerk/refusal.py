@@ -15,14 +15,12 @@ _LOOKED_AT = 2001  # arc lengths
 _LIMITS = ("torque", "stall_torque", "rms_torque")
 
 
-def asked_of(robot: Mechanism, path: Path, limits: Limits, payload: float) -> dict[str, object]:  # noqa: ARG001
-    """What an error says was asked for."""
-    return {**limits.as_dict(), "payload": payload, "path": path.as_dict()}
+def refused(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int) -> TimingFailed:
+    """The error for a search that ended without a motion on so many intervals.
 
-
-def refused(robot: Mechanism, path: Path, limits: Limits, payload: float) -> TimingFailed:
-    """The error that names place, joint, limit and torque; the place is where the drive lacks most."""
-    asked = asked_of(robot, path, limits, payload)
+    It names place, joint, limit and torque where a drive lacks most, if one lacks anything to move slowly.
+    """
+    asked = {**limits.as_dict(), "payload": payload, "path": path.as_dict()}
     s = np.linspace(0.0, path.length, _LOOKED_AT)
     poses, first = path.evaluate(s, 1)
     none = np.zeros_like(poses)
@@ -38,4 +36,4 @@ def refused(robot: Mechanism, path: Path, limits: Limits, payload: float) -> Tim
                 at, pose, drive = float(s[k]), poses[k].tolist(), robot.actuator_names[joint]
                 found, unit = float(torque[k, joint]), robot.actuator_units[joint]
                 return WeightBeyondDrive("jerk", asked, name, what, at, pose, drive, found, float(limit[joint]), unit)
-    return TimingFailed("jerk", asked, "no solution: the search ended without a motion, although the drives can rest")
+    return TimingFailed("jerk", asked, f"the search did not settle on {intervals} intervals")
