@@ -188,10 +188,11 @@ def _no_duals(intervals: int, rows: Rows) -> Array:
 
 
 def _holding(rows: Rows) -> Array:
-    """(n, rows) what tightening leaves: of a force at least half of what the weight leaves."""
-    weight = np.minimum(np.abs(rows.force[..., 3]) + rows.force[..., 5], 1.0)
+    """(n, rows) what tightening leaves: of a force half of what the weight leaves, where it leaves something."""
+    weight = np.abs(rows.force[..., 3]) + rows.force[..., 5]
     most = np.max([weight[k : weight.shape[0] - PARTS + k : PARTS] for k in range(PARTS + 1)], axis=0)
-    return np.pad(0.5 * (1.0 + most), ((0, 0), (0, rows.tight_count - most.shape[1])))
+    least = np.where(most < 1.0, 0.5 * (1.0 + most), 0.0)
+    return np.pad(least, ((0, 0), (0, rows.tight_count - most.shape[1])))
 
 
 def _uses(motion: SquaredRate, rows: Rows) -> Array:
