@@ -169,6 +169,10 @@ class AdeptCycle:
         """As `Path.stops`: none, as its corners are rounded."""
         return self.rounded.stops
 
+    def waypoint(self, s: float) -> int | None:  # noqa: ARG002
+        """None: it is named by its pick and its place."""
+        return None
+
     def as_dict(self) -> dict[str, object]:
         """The fields, with lists for tuples and the place's own lift."""
         fields_ = asdict(self) | {"place_lift": self.down}

@@ -32,29 +32,41 @@ def require_possible(robot: Mechanism, path: Path, limits: Limits, payload: floa
     count = len(robot.joint_names)
     if (ranges := limits.ranges(count)) is not None:
         (poses,) = path.evaluate(s, 0)
-        _require(robot, "position", s, poses, to_actuators(robot, robot.inverse(poses)), ranges)
-    ends = np.array([0.0, path.length])
-    (poses,) = path.evaluate(ends, 0)
+        _require(robot, path, "position", s, to_actuators(robot, robot.inverse(poses)), ranges)
+    require_held(robot, path, limits, payload, np.array([0.0, path.length]))
+
+
+def require_held(robot: Mechanism, path: Path, limits: Limits, payload: float, s: Array) -> None:
+    """Check the torque of the weight at rest.
+
+    Args:
+        robot, path, limits, payload: as for `require_possible`.
+        s: (k,) arc lengths [m].
+
+    Raises:
+        PathBeyondLimit: a joint needs more torque at rest than it has.
+    """
+    (poses,) = path.evaluate(s, 0)
+    rest = np.zeros_like(poses)
     for name in ("torque", "stall_torque"):
-        if (most := limits.of_joints(name, count)) is not None:
-            rest = np.zeros_like(poses)
-            _require(robot, name, ends, poses, inverse_dynamics(robot, payload, poses, rest, rest), (-most, most))
+        if (most := limits.of_joints(name, len(robot.joint_names))) is not None:
+            _require(robot, path, name, s, inverse_dynamics(robot, payload, poses, rest, rest), (-most, most))
 
 
-def _require(robot: Mechanism, limit: str, s: Array, poses: Array, values: Array, ranges: tuple[Array, Array]) -> None:
+def _require(robot: Mechanism, path: Path, limit: str, s: Array, values: Array, ranges: tuple[Array, Array]) -> None:
     """Raise for the value that is furthest beyond its range, over the range's width."""
     low, high = ranges
     beyond = np.maximum(low - values, values - high) / (high - low)
     k, joint = np.unravel_index(int(beyond.argmax()), beyond.shape)
     if beyond[k, joint] > _ROUNDING:
-        at_rest = limit != "position"
-        unit = robot.actuator_units[joint]
+        unit, at = robot.actuator_units[joint], float(s[k])
         raise PathBeyondLimit(
             limit,
             robot.actuator_names[joint],
-            float(s[k]),
-            poses[k].tolist(),
+            at,
+            path.evaluate(s[k], 0)[0].tolist(),
             float(values[k, joint]),
             (float(low[joint]), float(high[joint])),
-            {"rad": "N m", "m": "N"}[unit] + " at rest" if at_rest else unit,
+            unit if limit == "position" else {"rad": "N m", "m": "N"}[unit],
+            path.waypoint(at),
         )

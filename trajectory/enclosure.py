@@ -24,9 +24,12 @@ from trajectory.motion import Motion, PoseMotion, motion_of
 from trajectory.timed import TimedMotion
 
 _ALL = (-np.inf, np.inf)
-_REST = 1e-9  # m/s or rad/s
+_REST = 1e-9  # of the largest speed
+_LOOKED_AT = 101  # instants, for the largest speed of a motion
 _ROUNDED = 1e-6  # of a speed's slack: far more than what rounding the times of short parts is worth
-_SLACK = 1e-12  # relative and absolute: far more than what evaluation in double arithmetic is off by
+_SLACK = (
+    1e-12  # relative, to a value and to the largest one: far more than what evaluation in double arithmetic is off by
+)
 
 
 class Slack(NamedTuple):
@@ -56,7 +59,7 @@ def slack(robot: Mechanism, timed: TimedMotion, payload: float, low: Array, high
     tool, snap, away = timed.at(0.5 * low + 0.5 * high), timed.enclose_snap(low, high), list[Array]()
     steepest = np.abs(snap).max(axis=0)
     for value in tool[::-1]:
-        away.insert(0, half * steepest + _SLACK * (1.0 + np.abs(value)))
+        away.insert(0, half * steepest + _SLACK * (np.abs(value).max() + np.abs(value)))
         steepest = np.abs(value) + away[0]
     bounds = [np.stack([value - d, value + d]) for value, d in zip(tool, away, strict=True)]
     boxes = np.concatenate([*bounds, snap], axis=-1)
@@ -64,7 +67,8 @@ def slack(robot: Mechanism, timed: TimedMotion, payload: float, low: Array, high
     found = half * np.maximum(np.abs(least), np.abs(most))
     count = len(robot.joint_names)
     *joints, torque = (found[:, k * count : (k + 1) * count] for k in range(5))
-    (starts, ends) = np.abs(timed.at(np.array([0.0, timed.duration])).velocity).max(axis=-1) <= _REST
+    speeds = np.abs(timed.at(np.linspace(0.0, timed.duration, _LOOKED_AT)).velocity).max(axis=-1)
+    starts, ends = speeds[[0, -1]] <= _REST * speeds.max()
     at_rest = (starts & (low <= 0.0)) | (ends & (high >= timed.duration))
     friction, unknown = _friction_slack(robot, tool, payload, joints, at_rest)
     # Up to the middle the torque is at most the line of least slope through it, beyond it that of the largest.
@@ -84,7 +88,9 @@ def _friction_slack(
     speed, acceleration = motion.joints.first, motion.joints.second
     own = drives.friction(speed)[0]
     without, size = motion.torque - own, np.abs(motion.torque)
-    unknown = np.abs(speed) <= joints[1] * (1.0 + _ROUNDED) + _REST  # where it is at rest it bears none
+    unknown = (
+        np.abs(speed) <= joints[1] * (1.0 + _ROUNDED) + _REST * np.abs(speed).max()
+    )  # where it is at rest it bears none
     # From rest and to rest the speed keeps its sign where the acceleration does.
     starting = at_rest[:, None] & (np.abs(acceleration) > joints[2])
     most = np.where(starting, np.maximum(np.abs(without), size), np.abs(without) + coulomb)

@@ -8,13 +8,20 @@ from pathlib import Path as FilePath
 from kinematics.errors import InvalidValue, LinkwrightError
 
 
+def _place(at: float, pose: Sequence[float] | None, waypoint: int | None) -> str:
+    """Where on a path, in words."""
+    of_pose = "" if pose is None else f", pose ({', '.join(f'{v:.6g}' for v in pose)})"
+    near = "" if waypoint is None else f", nearest to waypoint {waypoint}"
+    return f"path at s = {at:.6g} m{of_pose}{near}"
+
+
 class RoughPath(LinkwrightError):
     """The path's tangent is not of unit length, or it jumps: a cusp or a kink cannot be passed at speed."""
 
-    def __init__(self, at: float, what: str, found: float, bound: float) -> None:
-        self.at, self.what, self.found, self.bound = at, what, found, bound
+    def __init__(self, at: float, what: str, found: float, bound: float, waypoint: int | None = None) -> None:
+        self.at, self.what, self.found, self.bound, self.waypoint = at, what, found, bound, waypoint
         super().__init__(
-            f"path at s = {at:.6g} m: {what} is {found:.4g}, expected at most {bound:.4g}; "
+            f"{_place(at, None, waypoint)}: {what} is {found:.4g}, expected at most {bound:.4g}; "
             "let it stop where it reverses (a corner without a blend), or round the corner more"
         )
 
@@ -31,15 +38,22 @@ class PathRefused(LinkwrightError):
     """A path passes where a limb cannot reach or the robot is singular, or could not be proved not to.
 
     `at` is the arc length [m], `limb` counts from 1, None where all limbs together are meant; `bound` is an upper
-    bound of the margin there where it fails, and its best lower bound where it is undecided.
+    bound of the margin there where it fails, and its best lower bound where it is undecided; `waypoint` is the nearest.
     """
 
     def __init__(
-        self, margin: str, at: float, pose: Sequence[float], limb: int | None, bound: float, proved: bool
+        self,
+        margin: str,
+        at: float,
+        pose: Sequence[float],
+        limb: int | None,
+        bound: float,
+        proved: bool,
+        waypoint: int | None = None,
     ) -> None:
         self.margin, self.at, self.limb, self.bound, self.proved = margin, at, limb, bound, proved
-        self.pose = tuple(float(v) for v in pose)
-        where = f"path at s = {at:.6g} m, pose ({', '.join(f'{v:.6g}' for v in self.pose)})"
+        self.pose, self.waypoint = tuple(float(v) for v in pose), waypoint
+        where = _place(at, self.pose, waypoint)
         of_limb = "" if limb is None else f" of limb {limb}"
         found = f"at most {bound:.6g}" if proved else f"undecided, proved is at least {bound:.6g}"
         super().__init__(f"{where}: the {margin} margin{of_limb} is {found}; expected above 0")
@@ -48,7 +62,8 @@ class PathRefused(LinkwrightError):
 class PathBeyondLimit(LinkwrightError):
     """A path passes a pose that breaks a limit however it is travelled.
 
-    `limit` is the field of the limits, `at` the arc length [m], `found` the joint's value beyond `allowed`, SI.
+    `limit` is the field of the limits, `at` the arc length [m], `found` the joint's value beyond `allowed`, SI: its
+    position or, of a torque limit, what the weight alone asks of it at rest. `waypoint` is the nearest, from 1.
     """
 
     exit_status = 1
@@ -62,13 +77,16 @@ class PathBeyondLimit(LinkwrightError):
         found: float,
         allowed: tuple[float, float],
         unit: str,
+        waypoint: int | None = None,
     ) -> None:
         self.limit, self.joint, self.at, self.found, self.allowed = limit, joint, at, found, allowed
-        self.pose = tuple(float(v) for v in pose)
-        where = f"path at s = {at:.6g} m, pose ({', '.join(f'{v:.6g}' for v in self.pose)})"
-        quantity = "position" if limit == "position" else "torque"
+        self.pose, self.waypoint = tuple(float(v) for v in pose), waypoint
+        of_weight = limit != "position"
+        what = (
+            f"the weight alone, at rest, asks {joint} for a torque of" if of_weight else f"the position of {joint} is"
+        )
         super().__init__(
-            f"{where}: the {quantity} of {joint} is {found:.6g} {unit}; "
+            f"{_place(at, self.pose, waypoint)}: {what} {found:.6g} {unit}; "
             f"expected from {allowed[0]:.6g} to {allowed[1]:.6g}"
         )
 

@@ -29,6 +29,7 @@ from trajectory.limits import Limits
 from trajectory.path import Array, Path, places
 
 _DIRECTIONS = 16  # in which the tool's acceleration is bounded, over half a turn
+_MOVING = 0.5  # the length of a tangent is 1, or 0 where the tool turns in place
 _SLACK = 1e-12  # relative and absolute: far more than what evaluation in double arithmetic is off by
 
 
@@ -76,7 +77,8 @@ def interval_rows(robot: Mechanism, path: Path, limits: Limits, payload: float, 
     with np.errstate(divide="ignore"):
         highest = slowest.max(axis=-1) ** -2.0
     if limits.tool_speed is not None:
-        highest = np.minimum(highest, limits.tool_speed**2)
+        moving = np.linalg.norm(middle[1][:, : places(path.pose_names)], axis=-1) > _MOVING
+        highest = np.where(moving, np.minimum(highest, limits.tool_speed**2), highest)
     groups = [np.empty((len(Rows._fields), len(half), 0))]
     if (torque := limits.of_joints("torque", count)) is not None:
         constant = _with_friction(robot, of(2), first, highest)

@@ -1,8 +1,8 @@
 """The legs and corners of a path through points.
 
 A point is no corner where the path goes straight on: waypoints in a row without a blend are one leg where each step
-between them is within `STRAIGHT` of the leg's own direction. Such a leg passes a waypoint beside it by no more than that
-share of the step. Any other waypoint without a blend is a stop.
+between them is within `STRAIGHT` of the leg's own direction. Such a leg misses a waypoint by no more than that share of
+its steps. Any other waypoint without a blend is a stop.
 
 Where the tool point stands still from one waypoint to the next, the tool turns in place, from stop to stop. Such a leg
 is as long as the angle by which it turns times the path's longest leg; where the path has no other leg, 1 m a radian.

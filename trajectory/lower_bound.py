@@ -27,7 +27,7 @@ from trajectory.path import Array, Path, require_poses_of
 
 _ROUNDING = 1e-9  # relative: far more than the arithmetic of the linear programs is off by
 _LINE = 1e-12  # relative to a row's or a bound's size
-_MOST = 1e9  # m/s^2 and m^2/s^2: no path asks for more
+_MOST = 1e9  # 1/s^2: lengths of the path and their squares, of which no motion asks for more
 
 
 def lower_bound(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = 4000) -> float:
@@ -49,9 +49,10 @@ def lower_bound(robot: Mechanism, path: Path, limits: Limits, payload: float, in
     edges = np.union1d(path.length * shares, path.knots)
     edges = edges[np.append(np.diff(edges) > 1e-12 * path.length, True)]
     rows, highest = interval_rows(robot, path, limits, payload, edges)
-    highest, lengths = np.minimum(highest, _MOST), np.diff(edges)
-    steepest = _steepest(rows, highest)
-    x, at_edges = np.empty(edges.size), np.minimum(np.append(highest, _MOST), np.append(_MOST, highest))
+    most = _MOST * path.length
+    highest, lengths = np.minimum(highest, most * path.length), np.diff(edges)
+    steepest = _steepest(rows, highest, most)
+    x, at_edges = np.empty(edges.size), np.minimum(np.append(highest, np.inf), np.append(np.inf, highest))
     blocked = _profile(*_averaged(rows, lengths, steepest), at_edges, x)
     if blocked >= 0:
         asked = {**limits.as_dict(), "payload": payload, "path": path.as_dict()}
@@ -59,14 +60,14 @@ def lower_bound(robot: Mechanism, path: Path, limits: Limits, payload: float, in
     return _least_time(x, lengths, steepest, highest) * (1.0 - _ROUNDING)
 
 
-def _steepest(rows: Rows, highest: Array) -> Array:
+def _steepest(rows: Rows, highest: Array, limit: float) -> Array:
     """(2, k) the most that u and -u can be in each interval [m/s^2]; 0 where there is no such u."""
     by_x = np.hstack([rows.b - rows.b_radius, -rows.b - rows.b_radius])
     rest = np.hstack([1.0 - rows.c + rows.c_radius, 1.0 + rows.c + rows.c_radius])
     found = np.empty((2, highest.size))
     for most, sign in zip(found, (1.0, -1.0), strict=True):
         by_u = np.hstack([sign * rows.a - rows.a_radius, -sign * rows.a - rows.a_radius])
-        _largest_each(*_usable(by_u, by_x, rest), np.full(highest.size, _MOST), highest, most)
+        _largest_each(*_usable(by_u, by_x, rest), np.full(highest.size, limit), highest, most)
     return found * (1.0 + _ROUNDING)
 
 
@@ -90,7 +91,7 @@ def _usable(first: Array, second: Array, rest: Array) -> tuple[Array, Array, Arr
 def _least_time(x: Array, lengths: Array, steepest: Array, highest: Array) -> float:
     """The integral of 1 / sqrt(x) over the largest x: a tent from both ends of each interval, or Jensen's mean."""
     first, last = x[:-1], x[1:]
-    rise, fall = np.maximum(steepest, 1e-9)
+    rise, fall = np.maximum(steepest, _LINE * steepest.max())
     ridge = np.clip((last - first + 2 * fall * lengths) / (2 * (rise + fall)), 0.0, lengths)
     up = (np.sqrt(first + 2 * rise * ridge) - np.sqrt(first)) / rise
     down = (np.sqrt(last + 2 * fall * (lengths - ridge)) - np.sqrt(last)) / fall

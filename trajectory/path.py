@@ -79,6 +79,9 @@ class Path(Protocol):
         None where nothing is known by construction: then it must not jump, and `require_smooth` looks for jumps.
         """
 
+    def waypoint(self, s: float) -> int | None:
+        """The waypoint, counted from 1, that is nearest to an arc length along the path; None where it has none."""
+
     def as_dict(self) -> dict[str, object]:
         """Plain data that describes the path, for a file's header."""
 
@@ -124,6 +127,10 @@ class Reversed:
         """As `Path.stops`."""
         stops = self.path.stops
         return None if stops is None else tuple(self.length - s for s in reversed(stops))
+
+    def waypoint(self, s: float) -> int | None:
+        """As `Path.waypoint`, by the path's own count."""
+        return self.path.waypoint(self.length - s)
 
     def as_dict(self) -> dict[str, object]:
         """The path's own data, marked as reversed."""
@@ -172,6 +179,10 @@ class Part:
         """As `Path.stops`."""
         stops = self.path.stops
         return None if stops is None else tuple(s - self.start for s in stops if self.start < s < self.stop)
+
+    def waypoint(self, s: float) -> int | None:
+        """As `Path.waypoint`, by the path's own count."""
+        return self.path.waypoint(self.start + s)
 
     def as_dict(self) -> dict[str, object]:
         """The path's own data, and from where to where."""

@@ -148,7 +148,8 @@ class _Claims:
             row = int(np.argmin(np.where(where[:, k], values[:, k], np.inf)))
             s = float(at[row])
             (pose,) = self.path.evaluate(np.array(s), 0)
-            raise PathRefused(self.names[k], s, pose.tolist(), self.limbs[k], float(values[row, k]), proved)
+            limb, near = self.limbs[k], self.path.waypoint(s)
+            raise PathRefused(self.names[k], s, pose.tolist(), limb, float(values[row, k]), proved, near)
 
 
 def _steepest(least: Array, most: Array, box: PathBox, count: int) -> Array:

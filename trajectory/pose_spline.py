@@ -125,6 +125,10 @@ class InTime:
         """The pose and its derivatives by time."""
         return tuple(self.spline.at(s)[: order + 1])
 
+    def waypoint(self, s: float) -> int | None:  # noqa: ARG002
+        """None."""
+        return None
+
     def enclose(self, low: Array, high: Array) -> PathBox:
         """As `Path.enclose`: from the middle, where the jerk is known, one order after the other."""
         pose, velocity, acceleration, jerk = self.spline.at(0.5 * low + 0.5 * high)

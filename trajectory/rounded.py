@@ -66,6 +66,10 @@ class RoundedPath:
         """As `Path.stops`: the corners without a blend."""
         return self._layout.stops
 
+    def waypoint(self, s: float) -> int | None:
+        """As `Path.waypoint`."""
+        return int(np.argmin(np.abs(self._layout.at - s))) + 1
+
     def as_dict(self) -> dict[str, object]:
         """The fields, as lists."""
         return {

@@ -34,7 +34,7 @@ def require_smooth(path: Path) -> None:
         _require_no_jump(path)
     for stop in path.stops or ():
         before, after = (path.evaluate(np.array(s), 1)[1] for s in (np.nextafter(stop, 0.0), stop))
-        raise RoughPath(stop, "a jump of the tangent", float(np.linalg.norm(after - before)), 0.0)
+        raise RoughPath(stop, "a jump of the tangent", float(np.linalg.norm(after - before)), 0.0, path.waypoint(stop))
 
 
 class _Samples(NamedTuple):

@@ -11,7 +11,7 @@ import numpy as np
 from kinematics import InvalidValue
 from trajectory.knots import interval_of
 from trajectory.motion import PoseMotion, largest_speed, pose_motion, travelled_snap
-from trajectory.path import Array, Path
+from trajectory.path import Array, Path, places
 from trajectory.timing import TimeLaw
 
 _ROUNDING = 1e-9  # of the length
@@ -149,7 +149,8 @@ class TimedPath:
 
     @property
     def kink(self) -> float:
-        """The largest jump, at a knot inside, of one of the first three derivatives by s over the length."""
+        """The largest jump, at a knot inside, of one of the first three derivatives by s over the length; of a place
+        over the length."""
         knots, length = np.array(self.path.knots), self.path.length
         if knots.size < 3:
             return 0.0
@@ -158,8 +159,9 @@ class TimedPath:
         first, second, third = (np.abs(b - a) for b, a in zip(before, after, strict=True))
         fourth = self.path.steepest((knots[1:] + knots[:-1]) / 2, 4)
         rounding = _ULPS * np.finfo(float).eps * (length * np.maximum(fourth[:-1], fourth[1:]) + np.abs(after[2]))
-        third = np.maximum(third - rounding, 0.0)
-        return float(max(first.max(), second.max() * length, third.max() * length**2))
+        jumps = (first, second * length, np.maximum(third - rounding, 0.0) * length**2)
+        unit = np.where(np.arange(first.shape[1]) < places(self.path.pose_names), 1.0, length)
+        return float(max((jump * unit).max() for jump in jumps))
 
     def _fourth_slack(self, fourth: Array, low: Array, high: Array, away: Array) -> Array:
         """How far the fourth derivative by s may be, between two arc lengths (k,), from what it is in the middle.

@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from kinematics import InvalidValue, Mechanism
-from trajectory.at_rest import require_possible
+from trajectory.at_rest import require_held, require_possible
 from trajectory.errors import TimingFailed
 from trajectory.limits import Limits
 from trajectory.path import Array, Path, require_poses_of
@@ -29,8 +29,11 @@ from trajectory.timing import TimeLaw
 INTERVALS = 1000
 _LEAST_IN_PIECE = 8  # intervals between two knots of the path, at first
 _EXCESS = 1e-4  # over a limit in the middle of an interval that is not halved
-_UNUSED = 5e-4  # mean over the duration of the share of the limits that is left unused
+_UNUSED = 5e-4  # mean over the duration of the share of the limits that is left unused: twice what time may be lost
+_MOST = 40_000  # points on which time is still gained; where more were needed, more may be left unused
 _KEPT = 0.5  # of that: what the intervals that are not halved may leave
+_GRADING = 4.0  # times as long as its neighbour an interval may be: its middle alone does not show what it exceeds
+_TOGETHER = 50  # points, of which the one is named where the weight is furthest beyond a torque
 _ROUNDS = 40  # of halving
 _REFUSED = {
     "jerk": "its s'' is bang-bang",
@@ -65,8 +68,11 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     require_possible(robot, path, limits, payload, s)
     asked = {**limits.as_dict(), "payload": payload, "path": path.as_dict()}
     rows = path_rows(robot, path, limits, payload, s)
+    rows.friction[[0, -1]] = 0.0  # at rest
     for _ in range(_ROUNDS):
-        x = _profile(rows, asked)
+        x, blocked = _profile(rows, asked)
+        if blocked >= 0:
+            _refuse(robot, path, limits, payload, rows.s[blocked:], asked)
         middle = path_rows(robot, path, limits, payload, 0.5 * rows.s[1:] + 0.5 * rows.s[:-1])
         open_ = _unsettled(rows, middle, x)
         if not open_.any():
@@ -98,15 +104,22 @@ def _first_grid(path: Path, intervals: int) -> Array:
     return np.append(np.concatenate(edges), knots[-1])
 
 
-def _profile(rows: PathRows, asked: dict[str, object]) -> Array:
-    """(k,) the fastest x on a grid [m^2/s^2]."""
+def _profile(rows: PathRows, asked: dict[str, object]) -> tuple[Array, int]:
+    """(k,) the fastest x on a grid [m^2/s^2], and the interval that nothing passes or -1."""
     if not all(np.isfinite(v).all() for v in rows):
         raise TimingFailed("toppra", asked, "the path's coefficients are not finite: a singular pose on it")
     x = np.empty(rows.s.size)
-    blocked = fastest_profile(np.diff(rows.s), (rows.a, rows.b, rows.c, rows.friction), rows.highest, x)
-    if blocked >= 0:
-        raise TimingFailed("toppra", asked, f"no motion within the limits passes s = {rows.s[blocked]:.6g} m")
-    return x
+    rows_ = (rows.a, rows.b, rows.c, rows.friction)
+    return x, fastest_profile(np.diff(rows.s), rows_, rows.highest, x)
+
+
+def _refuse(robot: Mechanism, path: Path, limits: Limits, payload: float, s: Array, asked: dict[str, object]) -> None:
+    """Raise for what blocks the way first after s[0]: where the robot can hold still, it can move on too."""
+    for some in np.array_split(s, max(1, s.size // _TOGETHER)):
+        require_held(robot, path, limits, payload, some)
+    pose = ", ".join(f"{v:.6g}" for v in path.evaluate(s[0], 0)[0])
+    near = "" if (waypoint := path.waypoint(float(s[0]))) is None else f", nearest to waypoint {waypoint}"
+    raise TimingFailed("toppra", asked, f"no motion within the limits passes s = {s[0]:.6g} m, pose ({pose}){near}")
 
 
 def _unsettled(rows: PathRows, middle: PathRows, x: Array) -> Array:
@@ -121,7 +134,8 @@ def _unsettled(rows: PathRows, middle: PathRows, x: Array) -> Array:
     speed = np.sqrt(x)
     lasting = 2 * lengths / (speed[1:] + speed[:-1])
     unused, exceeded = np.maximum(1.0 - used, 0.0) * lasting / lasting.sum(), used > 1.0 + _EXCESS
-    if unused.sum() <= _UNUSED:
+    exceeded |= lengths > _GRADING * np.minimum(np.append(lengths[1:], np.inf), np.append(np.inf, lengths[:-1]))
+    if unused.sum() <= _UNUSED or x.size > _MOST:
         return exceeded
     order = np.argsort(unused)
     lost = np.empty(unused.size)

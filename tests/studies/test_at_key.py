@@ -89,13 +89,13 @@ def fake_mechanism() -> None:
         (SMALL + DRIVE + "encoder_gear = 0\n", [], "encoder_gear", "drive.encoder_gear", "found 0; expected finite", 2),
         (SMALL + DRIVE + "encoder_gear = [1, 2]\n", [], "encoder_gear", "drive.encoder_gear", "one a joint", 2),
         (SMALL + DRIVE + "axes = ['a', 'a', 'b', 'c']\n", [], "axes", "drive.axes", "different names", 2),
-        (SMALL.replace("= 127", "= 1.0"), [], "torque", "limits.torque", "N m at rest; expected from -1 to 1", 1),
+        (SMALL.replace("= 127", "= 1.0"), [], "torque", "limits.torque", "N m; expected from -1 to 1", 1),
         (
             SMALL.replace("= 127", "= 1.0\njerk = 1e5"),
             ["--law", "jerk"],
             "torque",
             "limits.torque",
-            "N m at rest; expected from -1 to 1",
+            "N m; expected from -1 to 1",
             1,
         ),
         (

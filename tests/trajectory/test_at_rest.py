@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from kinematics import Heli4
+from kinematics.dynamics import inverse_dynamics
 from trajectory import AdeptCycle, Limits, PathBeyondLimit, RoundedPath, TimingFailed, jerk_limited, time_optimal
 from trajectory.motion import motion_of
 
@@ -23,7 +24,8 @@ def limits(law: Law, **others: object) -> Limits:
 def test_a_weight_beyond_the_torque_at_an_end_is_refused_with_its_torque(
     robot: Heli4, path: AdeptCycle, law: Law
 ) -> None:
-    with pytest.raises(PathBeyondLimit, match=r"torque of q1 is -6.\d+ N m at rest; expected from -2 to 2") as caught:
+    words = r"the weight alone, at rest, asks q1 for a torque of -6.\d+ N m; expected from -2 to 2"
+    with pytest.raises(PathBeyondLimit, match=words) as caught:
         law(robot, path, limits(law, torque=2.0), 1.0)
     assert (caught.value.limit, caught.value.at) == ("torque", path.length)
     slow = time_optimal(robot, path, Limits(speed=20.0), 1.0).stretched(1e8)
@@ -44,14 +46,26 @@ def test_a_stall_torque_below_the_weight_is_refused(robot: Heli4, path: AdeptCyc
     assert caught.value.limit == "stall_torque"
 
 
-@pytest.mark.parametrize("law", LAWS)
-def test_a_weight_that_only_the_middle_cannot_bear_is_for_the_law_to_find(robot: Heli4, law: Law) -> None:
-    poses = ((0.0, 0.0, -0.85, 0.0), (0.35, 0.0, -0.75, 0.0), (0.35, 0.0, -0.65, 0.0))
-    way = RoundedPath(robot.pose_names, poses, (0.05,))
+STEEP = RoundedPath(
+    Heli4.pose_names, ((0.0, 0.0, -0.85, 0.0), (0.35, 0.0, -0.75, 0.0), (0.35, 0.0, -0.65, 0.0)), (0.05,)
+)
+
+
+def test_a_weight_that_only_the_middle_cannot_bear_is_for_the_jerk_law_to_find(robot: Heli4) -> None:
     with pytest.raises(TimingFailed, match="no solution") as caught:
-        law(robot, way, limits(law, torque=6.351), 1.0)
-    assert caught.value.asked["path"] == way.as_dict()
+        jerk_limited(robot, STEEP, limits(jerk_limited, torque=6.351), 1.0)
+    assert caught.value.asked["path"] == STEEP.as_dict()
     assert "blends" not in str(caught.value)
+
+
+def test_where_the_weight_blocks_the_way_pose_waypoint_joint_and_torque_are_named(robot: Heli4) -> None:
+    with pytest.raises(PathBeyondLimit, match="nearest to waypoint 2: the weight alone, at rest, asks q1") as caught:
+        time_optimal(robot, STEEP, limits(time_optimal, torque=6.351), 1.0)
+    assert (caught.value.waypoint, caught.value.joint, caught.value.limit) == (2, "q1", "torque")
+    pose, rest = np.array(caught.value.pose), np.zeros(4)
+    assert STEEP.evaluate(np.array(caught.value.at), 0)[0] == pytest.approx(pose)
+    assert inverse_dynamics(robot, 1.0, pose, rest, rest)[0] == pytest.approx(caught.value.found)
+    assert abs(caught.value.found) > 6.351
 
 
 @pytest.mark.parametrize("law", LAWS)

@@ -15,11 +15,11 @@ from tests.bench.timing.toppra_peer import ExactPath, problem_of, solved
 from trajectory import (
     AdeptCycle,
     Limits,
+    PathBeyondLimit,
     Reversed,
     RoughPath,
     RoundedPath,
     TimedPath,
-    TimingFailed,
     pieces,
     time_optimal,
     verify,
@@ -184,6 +184,6 @@ def test_nothing_is_written_to_the_terminal(
     way = RoundedPath(
         robot.pose_names, ((0.0, 0.0, -0.85, 0.0), (0.35, 0.0, -0.75, 0.0), (0.35, 0.0, -0.65, 0.0)), (0.05,)
     )
-    with pytest.raises(TimingFailed):
+    with pytest.raises(PathBeyondLimit):
         time_optimal(robot, way, replace(limits, torque=6.351), 1.0)
     assert capfd.readouterr() == ("", "")
