@@ -8,7 +8,7 @@ from kinematics import InvalidValue, Mechanism
 from trajectory.at_rest import require_possible
 from trajectory.jerk.motion import law_in_time
 from trajectory.jerk.refinement import Answer, Problem, fastest
-from trajectory.jerk.refusal import refused
+from trajectory.jerk.refusal import refuse
 from trajectory.jerk.rows import PARTS, Array, smoothstep
 from trajectory.limits import Limits
 from trajectory.path import Path, require_poses_of
@@ -33,8 +33,9 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     Raises:
         InvalidValue: too few intervals, no jerk limit, an impossible payload, or another kind of pose.
         RoughPath, UnreachablePose: as `time_optimal`.
-        PathBeyondLimit: a position beyond its range, or a weight beyond the torque at an end.
-        TimingFailed: there is no law within the limits.
+        PathBeyondLimit: a position beyond its range, or a weight beyond the torque at an end or, where no motion was
+            found that passes at speed, in between.
+        TimingFailed: no law was found within the limits.
     """
     if intervals < LEAST_INTERVALS:
         raise InvalidValue("intervals of the jerk law", intervals, f"at least {LEAST_INTERVALS}")
@@ -46,7 +47,7 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     problem = Problem(robot, path, limits, payload)
     answer = fastest(problem, intervals)
     if (found := timed(path, answer)) is None:
-        raise refused(*problem, answer.sizes.size)
+        refuse(*problem, answer.sizes.size)
     return found
 
 

@@ -14,7 +14,7 @@ from kinematics import Mechanism
 from trajectory.jerk.between import used
 from trajectory.jerk.mesh import first_mesh, next_mesh, piece_edges
 from trajectory.jerk.motion import SquaredRate
-from trajectory.jerk.refusal import refused
+from trajectory.jerk.refusal import refuse
 from trajectory.jerk.rows import PARTS, Array, Rows, rows_of, uniform_rate, weight_use
 from trajectory.jerk.search import SOLVED, search
 from trajectory.jerk.stations import keeping, row_count
@@ -105,7 +105,7 @@ def fastest(problem: Problem, intervals: int) -> Answer:
         elif best is not None:
             break  # so fine that the search fails: the knots before were fine enough
     if best is None:
-        raise refused(*problem, found.answer.sizes.size)
+        refuse(*problem, found.answer.sizes.size)
     return best
 
 
@@ -125,7 +125,7 @@ def _first(problem: Problem, knots: Array) -> _Found:
     unit = 1.0 / (_SLOWER * uniform_rate(rows, max(1.0, _HELD * weight_use(rows))))
     found = _searched(start, _in_unit(rows, unit), unit, np.zeros(rows.mean.shape[1]), _FAR, _ROUGHLY)
     if found is None:
-        raise refused(*problem, knots.size - 1)
+        refuse(*problem, knots.size - 1)
     return found
 
 
