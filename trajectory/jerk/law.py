@@ -46,16 +46,11 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     require_possible(robot, path, limits, payload, np.linspace(0.0, path.length, _CHECKED + 1))
     problem = Problem(robot, path, limits, payload)
     answer = fastest(problem, intervals)
-    if (found := timed(path, answer)) is None:
-        refuse(*problem, answer.sizes.size)
-    return found
-
-
-def timed(path: Path, answer: Answer) -> TimedPath | None:
-    """The motion in time, slowed down by the little that it is over a limit; None where rounding hides its law."""
-    slower = max(1.0, answer.use) ** 0.5
+    slower = max(1.0, answer.use) ** 0.5  # by the little that it is over a limit
     law = law_in_time(answer.motion, path.length, answer.unit * slower, _per_jerk(answer, path.length))
-    return None if law is None else TimedPath(path, law)
+    if law is None:
+        refuse(*problem, answer.sizes.size)
+    return TimedPath(path, law)
 
 
 def _per_jerk(answer: Answer, length: float) -> Array:

@@ -54,12 +54,16 @@ class Problem(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """A motion, its rows, its unit of time [s], and the most that it uses of a row between the stations."""
+    """A motion, its rows, its unit of time [s], and the most that it uses of a row between the stations.
+
+    `tolerance` is how far its time may be above the least one on its knots, relative.
+    """
 
     motion: SquaredRate
     rows: Rows
     unit: float
     time: float
+    tolerance: float
     use: float
 
     @property
@@ -94,19 +98,28 @@ def fastest(problem: Problem, intervals: int) -> Answer:
         finer = _on_finer_knots(problem, edges, found, asked)
         if finer is None:
             break
-        found, asked = finer, 2 * asked
+        before, found, asked = found, finer, 2 * asked
         answer = _tightened(found.answer, found.duals) if found.converged else found.answer
         if found.converged and answer.use <= 1.0 + _NEARLY:
-            gained = best is None or answer.time < (1.0 - _STANDS) * best.time
-            best = answer if gained or best is None else best
-            stands = answer.time <= (1.0 + _STANDS) * found.answer.time
-            if stands or not gained or asked > _MOST:
+            left = max(answer.time / found.answer.time - 1.0, _to_be_gained(before.answer, answer))
+            if best is None or answer.time < best.time:
+                best = answer
+            if left <= _STANDS or asked > _MOST:
                 break
         elif best is not None:
             break  # so fine that the search fails: the knots before were fine enough
     if best is None:
         refuse(*problem, found.answer.sizes.size)
     return best
+
+
+def _to_be_gained(coarse: Answer, fine: Answer) -> float:
+    """The share of the time that closer knots still save, as what they save falls with the square of their distance.
+
+    The coarse motion may be above the least one on its knots by what its search left.
+    """
+    saved = abs(coarse.time - fine.time) / fine.time - coarse.tolerance
+    return max(saved, 0.0) / ((fine.sizes.size / coarse.sizes.size) ** 2 - 1.0)
 
 
 def _on_finer_knots(problem: Problem, edges: Array, found: _Found, intervals: int) -> _Found | None:
@@ -148,7 +161,9 @@ def _searched(
         if status == SOLVED:
             break
     motion = SquaredRate(start.knots, found)
-    return _Found(Answer(motion, rows, unit, time, float(_uses(motion, rows).max())), duals, status == SOLVED)
+    return _Found(
+        Answer(motion, rows, unit, time, tolerance, float(_uses(motion, rows).max())), duals, status == SOLVED
+    )
 
 
 def _untightened(rows: Rows, motion: SquaredRate) -> tuple[Array, Array, Array]:
