@@ -117,34 +117,6 @@ class TimingFailed(LinkwrightError):
         super().__init__(f"{law} law: {found}; asked for {what}")
 
 
-class WeightBeyondDrive(TimingFailed):
-    """No motion was found past a place where a drive cannot hold the weight, at any speed.
-
-    `limit` is the field of the limits, `cause` the weight alone or with friction; `at` is the arc length [m], `torque`
-    what the weight asks of the joint there, `most` what it has.
-    """
-
-    def __init__(
-        self,
-        law: str,
-        asked: Mapping[str, object],
-        limit: str,
-        cause: str,
-        at: float,
-        pose: Sequence[float],
-        joint: str,
-        torque: float,
-        most: float,
-        joint_unit: str,
-    ) -> None:
-        self.limit, self.cause, self.at, self.joint, self.torque, self.most = limit, cause, at, joint, torque, most
-        self.pose = tuple(float(v) for v in pose)
-        unit = {"rad": "N m", "m": "N"}[joint_unit]
-        where = f"s = {at:.6g} m, pose ({', '.join(f'{v:.6g}' for v in self.pose)})"
-        found = f"the {cause} asks {torque:.6g} {unit} of {joint}; expected at most {most:.6g} ({limit})"
-        super().__init__(law, asked, f"no solution: path at {where}: {found}, or a faster way past it")
-
-
 class LimitsExceeded(LinkwrightError):
     """A motion breaks a limit by more than may be repaired."""
 

@@ -9,7 +9,7 @@ import pytest
 
 from kinematics import Heli4
 from kinematics.dynamics import inverse_dynamics
-from trajectory import AdeptCycle, Limits, PathBeyondLimit, RoundedPath, TimingFailed, jerk_limited, time_optimal
+from trajectory import AdeptCycle, Limits, PathBeyondLimit, RoundedPath, jerk_limited, time_optimal
 from trajectory.motion import motion_of
 
 Law = Callable[..., object]
@@ -51,16 +51,10 @@ STEEP = RoundedPath(
 )
 
 
-def test_a_weight_that_only_the_middle_cannot_bear_is_for_the_jerk_law_to_find(robot: Heli4) -> None:
-    with pytest.raises(TimingFailed, match="no solution") as caught:
-        jerk_limited(robot, STEEP, limits(jerk_limited, torque=6.351), 1.0)
-    assert caught.value.asked["path"] == STEEP.as_dict()
-    assert "blends" not in str(caught.value)
-
-
-def test_where_the_weight_blocks_the_way_pose_waypoint_joint_and_torque_are_named(robot: Heli4) -> None:
+@pytest.mark.parametrize("law", LAWS)
+def test_where_the_weight_blocks_the_way_pose_waypoint_joint_and_torque_are_named(robot: Heli4, law: Law) -> None:
     with pytest.raises(PathBeyondLimit, match="nearest to waypoint 2: the weight alone, at rest, asks q1") as caught:
-        time_optimal(robot, STEEP, limits(time_optimal, torque=6.351), 1.0)
+        law(robot, STEEP, limits(law, torque=6.351), 1.0)
     assert (caught.value.waypoint, caught.value.joint, caught.value.limit) == (2, "q1", "torque")
     pose, rest = np.array(caught.value.pose), np.zeros(4)
     assert STEEP.evaluate(np.array(caught.value.at), 0)[0] == pytest.approx(pose)

@@ -8,6 +8,7 @@ from kinematics import InvalidValue, Mechanism
 from trajectory.at_rest import require_possible
 from trajectory.jerk.motion import law_in_time
 from trajectory.jerk.refinement import Answer, Problem, fastest
+from trajectory.jerk.refusal import refuse
 from trajectory.jerk.rows import PARTS, Array, smoothstep
 from trajectory.limits import Limits
 from trajectory.path import Path, require_poses_of
@@ -32,8 +33,9 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     Raises:
         InvalidValue: too few intervals, no jerk limit, an impossible payload, or another kind of pose.
         RoughPath, UnreachablePose: as `time_optimal`.
-        PathBeyondLimit: a position beyond its range, or a weight beyond the torque at an end.
-        TimingFailed: there is no law within the limits.
+        PathBeyondLimit: a position beyond its range, or a weight beyond the torque at an end or, where no motion was
+            found that passes at speed, in between.
+        TimingFailed: no law was found within the limits.
     """
     if intervals < LEAST_INTERVALS:
         raise InvalidValue("intervals of the jerk law", intervals, f"at least {LEAST_INTERVALS}")
@@ -42,13 +44,12 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     require_poses_of(robot, path)
     require_smooth(path)
     require_possible(robot, path, limits, payload, np.linspace(0.0, path.length, _CHECKED + 1))
-    return timed(path, fastest(Problem(robot, path, limits, payload), intervals))
-
-
-def timed(path: Path, answer: Answer) -> TimedPath:
-    """The motion in time, slowed down by the little that it is over a limit."""
-    slower = max(1.0, answer.use) ** 0.5
+    problem = Problem(robot, path, limits, payload)
+    answer = fastest(problem, intervals)
+    slower = max(1.0, answer.use) ** 0.5  # by the little that it is over a limit
     law = law_in_time(answer.motion, path.length, answer.unit * slower, _per_jerk(answer, path.length))
+    if law is None:
+        refuse(*problem, answer.sizes.size)
     return TimedPath(path, law)
 
 

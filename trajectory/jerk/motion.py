@@ -52,12 +52,13 @@ class SquaredRate(NamedTuple):
         return np.concatenate([[0.0], np.cumsum((pace[1:] + pace[:-1]) / 2 * np.diff(self.knots))])
 
 
-def law_in_time(motion: SquaredRate, length: float, unit: float, per_jerk: Array) -> TimeLaw:
+def law_in_time(motion: SquaredRate, length: float, unit: float, per_jerk: Array) -> TimeLaw | None:
     """The law whose arc length, speed and acceleration at the knots are the motion's, quartic in between.
 
     Over an interval of time h a quartic that joins (s, v, a) and (s + ds, v+, a+) exists for one h alone:
     ds = h (v + v+) / 2 + h^2 (a - a+) / 12. With V = (v+ - v - a h) / h^2 and A = (a+ - a) / h its third derivative
-    goes from 6 V - 2 A to 4 A - 6 V. Intervals are halved until that is close to the motion's own.
+    goes from 6 V - 2 A to 4 A - 6 V. Intervals are halved until that is close to the motion's own; None where
+    it does not come close.
 
     Args:
         motion: in a unit of time.
@@ -75,6 +76,8 @@ def law_in_time(motion: SquaredRate, length: float, unit: float, per_jerk: Array
             break
         knots = np.sort(np.append(knots, (knots[1:] + knots[:-1])[rough] / 2))
     s, v, a, h, (first, last) = found
+    if not (h > 0.0).all():
+        return None
     times = np.concatenate([[0.0], np.cumsum(h)])
     return TimeLaw("jerk", times, s, v, a[:-1], first, (last - first) / h)
 

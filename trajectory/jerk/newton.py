@@ -22,8 +22,8 @@ def _row_curvature(x: float, duals: Array, force: Array, tool: Array, local: Arr
         for side in range(2):
             by_root = force[j, 4] + (force[j, 2] if side == 0 else -force[j, 2])
             local[0] += max(-by_root, 0.0) * duals[2 * j + side] * cube
-    for j in range(tool.shape[0]):
-        dual = duals[duals.size - 1]
+    for j in range(tool.shape[0]):  # one
+        dual = duals[duals.size - 2]
         local[0] += 2.0 * tool[j, 2] * dual
         local[1] += tool[j, 1] * dual
         local[2] += 2.0 * tool[j, 0] * dual
@@ -115,24 +115,39 @@ def _add_rows(
     corner: Array,
 ) -> None:
     """What the rows of a station press with, and how that changes."""
+    xx, xw, ww, xz, wz, zz, x, w, z = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    x_loose, w_loose, z_loose, stiff, pulled = 0.0, 0.0, 0.0, 0.0, 0.0
+    by_x, by_w, by_z, by_tight = gradient
     for e in range(slack.size):
-        inverse, a, b, c = 1.0 / slack[e], gradient[e, 0], gradient[e, 1], gradient[e, 2]
+        inverse = 1.0 / slack[e]
         pull, q = target * inverse, dual[e] * inverse
-        force[0] -= pull * a
-        force[1] -= pull * b
-        force[2] -= pull * c
-        local[0] += q * a * a
-        local[1] += q * a * b
-        local[2] += q * b * b
-        local[3] += q * a * c
-        local[4] += q * b * c
-        local[5] += q * c * c
-        by_tight = gradient[e, 3]
-        loose[0] -= q * a * by_tight
-        loose[1] -= q * b * by_tight
-        loose[2] -= q * c * by_tight
-        corner[0] += q * by_tight * by_tight
-        corner[1] += pull * by_tight
+        a, b, c, t = by_x[e], by_w[e], by_z[e], by_tight[e]
+        x += pull * a
+        w += pull * b
+        z += pull * c
+        xx += q * a * a
+        xw += q * a * b
+        ww += q * b * b
+        xz += q * a * c
+        wz += q * b * c
+        zz += q * c * c
+        x_loose += q * a * t
+        w_loose += q * b * t
+        z_loose += q * c * t
+        stiff += q * t * t
+        pulled += pull * t
+    force[0] -= x
+    force[1] -= w
+    force[2] -= z
+    local[0] += xx
+    local[1] += xw
+    local[2] += ww
+    local[3] += xz
+    local[4] += wz
+    local[5] += zz
+    loose[0], loose[1], loose[2] = -x_loose, -w_loose, -z_loose
+    corner[0] += stiff
+    corner[1] += pulled
 
 
 @compiled

@@ -11,11 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics import Mechanism
-from trajectory.errors import TimingFailed
 from trajectory.jerk.between import used
 from trajectory.jerk.mesh import first_mesh, next_mesh, piece_edges
 from trajectory.jerk.motion import SquaredRate
-from trajectory.jerk.refusal import asked_of, refused
+from trajectory.jerk.refusal import refuse
 from trajectory.jerk.rows import PARTS, Array, Rows, rows_of, uniform_rate, weight_use
 from trajectory.jerk.search import SOLVED, search
 from trajectory.jerk.stations import keeping, row_count
@@ -24,16 +23,18 @@ from trajectory.path import Path
 
 _COARSE = 4  # times fewer intervals at first
 _IN_PIECE = 8  # intervals, at least, for each piece of the path on average
-_DOUBLINGS = 6
+_DOUBLINGS = 5
 _STANDS = 2e-4  # of the time: what tightening may cost on knots that are close enough
+_MOST = 16_000  # intervals, where a motion was found on fewer
 _ROUNDS = 4  # of tightening
-_NEARLY, _OVER = 1e-3, 1e-2  # over a row: what asks for closer knots, and what is no answer
+_NEARLY = 1e-3  # over a row: more is no answer
 _KEPT = 5e-5  # over a row that is left to the end
 _ROUGHLY, _CLOSELY = 1e-2, 1e-5  # of the time: how far from the least one a search may end
 _FAR, _NEAR, _SAME = 1e-4, 1e-5, 1e-6  # barrier of a search that starts from a slow, a good, its own motion
 _STEPS = 400
+_DRAWING = 100  # steps in which loosened rows are drawn in
 _LITTLE = 0.1  # share of a motion's squared rate: with less it is a poor start
-_PRESSED = (1e-2, 1.0)  # barriers of further tries
+_PRESSED = (1e-2,)  # barriers of further tries
 _HELD = 1.1  # by what more than needed rows are loosened
 _INSIDE = 1e-2  # barrier where a motion far from the rows is sought
 _RAISED = 1e-3  # of the largest x, where a motion would stand
@@ -53,12 +54,16 @@ class Problem(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """A motion, its rows, its unit of time [s], and the most that it uses of a row between the stations."""
+    """A motion, its rows, its unit of time [s], and the most that it uses of a row between the stations.
+
+    `tolerance` is how far its time may be above the least one on its knots, relative.
+    """
 
     motion: SquaredRate
     rows: Rows
     unit: float
     time: float
+    tolerance: float
     use: float
 
     @property
@@ -88,26 +93,42 @@ def fastest(problem: Problem, intervals: int) -> Answer:
     """
     edges = piece_edges(problem.path)
     asked = max(intervals, _IN_PIECE * (edges.size - 1))
-    found = _first(problem, first_mesh(edges, asked // _COARSE))
+    found, best = _first(problem, first_mesh(edges, asked // _COARSE)), None
     for _ in range(_DOUBLINGS + 1):
-        before = found.answer
-        over = np.clip(_uses(before.motion, before.rows).max(axis=1) - 1.0, 0.0, 1.0)
-        knots = next_mesh(edges, before.motion, over, asked)
-        rows = _in_unit(rows_of(*problem, knots), before.unit)
-        start = SquaredRate(knots, before.motion.at(knots))
-        finer = _searched(start, rows, before.unit, found.duals.means, _NEAR, _CLOSELY)
+        finer = _on_finer_knots(problem, edges, found, asked)
         if finer is None:
             break
-        found, asked = finer, 2 * asked
-        if found.converged:
-            answer = _tightened(found.answer, found.duals)
-            if answer.use <= 1.0 + _NEARLY and answer.time <= (1.0 + _STANDS) * found.answer.time:
-                return answer
-    answer = _tightened(found.answer, found.duals)
-    if not found.converged or answer.use > 1.0 + _OVER:
-        what = f"the search did not settle on {answer.sizes.size} intervals, peak over limit {answer.use:.6g}"
-        raise TimingFailed("jerk", asked_of(*problem), what)
-    return answer
+        before, found, asked = found, finer, 2 * asked
+        answer = _tightened(found.answer, found.duals) if found.converged else found.answer
+        if found.converged and answer.use <= 1.0 + _NEARLY:
+            left = max(answer.time / found.answer.time - 1.0, _to_be_gained(before.answer, answer))
+            if best is None or answer.time < best.time:
+                best = answer
+            if left <= _STANDS or asked > _MOST:
+                break
+        elif best is not None:
+            break  # so fine that the search fails: the knots before were fine enough
+    if best is None:
+        refuse(*problem, found.answer.sizes.size)
+    return best
+
+
+def _to_be_gained(coarse: Answer, fine: Answer) -> float:
+    """The share of the time that closer knots still save, as what they save falls with the square of their distance.
+
+    The coarse motion may be above the least one on its knots by what its search left.
+    """
+    saved = abs(coarse.time - fine.time) / fine.time - coarse.tolerance
+    return max(saved, 0.0) / ((fine.sizes.size / coarse.sizes.size) ** 2 - 1.0)
+
+
+def _on_finer_knots(problem: Problem, edges: Array, found: _Found, intervals: int) -> _Found | None:
+    before = found.answer
+    over = np.clip(_uses(before.motion, before.rows).max(axis=1) - 1.0, 0.0, 1.0)
+    knots = next_mesh(edges, before.motion, over, intervals)
+    rows = _in_unit(rows_of(*problem, knots), before.unit)
+    start = SquaredRate(knots, before.motion.at(knots))
+    return _searched(start, rows, before.unit, found.duals.means, _NEAR, _CLOSELY)
 
 
 def _first(problem: Problem, knots: Array) -> _Found:
@@ -117,7 +138,7 @@ def _first(problem: Problem, knots: Array) -> _Found:
     unit = 1.0 / (_SLOWER * uniform_rate(rows, max(1.0, _HELD * weight_use(rows))))
     found = _searched(start, _in_unit(rows, unit), unit, np.zeros(rows.mean.shape[1]), _FAR, _ROUGHLY)
     if found is None:
-        raise refused(*problem)
+        refuse(*problem, knots.size - 1)
     return found
 
 
@@ -140,7 +161,9 @@ def _searched(
         if status == SOLVED:
             break
     motion = SquaredRate(start.knots, found)
-    return _Found(Answer(motion, rows, unit, time, float(_uses(motion, rows).max())), duals, status == SOLVED)
+    return _Found(
+        Answer(motion, rows, unit, time, tolerance, float(_uses(motion, rows).max())), duals, status == SOLVED
+    )
 
 
 def _untightened(rows: Rows, motion: SquaredRate) -> tuple[Array, Array, Array]:
@@ -162,7 +185,7 @@ def _kept(start: SquaredRate, rows: Rows, tight: Array) -> Array | None:
     moving = _never_at_rest(start)
     loose = _HELD * float((_uses(moving, rows) - tight).max()) + _HELD - 1.0
     y, duals = moving.values.copy(), _Duals(_no_duals(sizes.size, rows), np.zeros(ones.size))
-    status, *_ = search(sizes, rows, tight, ones, y, *duals, _INSIDE, 0.0, _STEPS, loose, _PRICE)
+    status, *_ = search(sizes, rows, tight, ones, y, *duals, _INSIDE, 0.0, _DRAWING, loose, _PRICE)
     if status == SOLVED:
         return y
     return share * start.values if share else None
@@ -179,6 +202,14 @@ def _no_duals(intervals: int, rows: Rows) -> Array:
     return np.zeros((intervals, PARTS + 1, row_count(rows)))
 
 
+def _holding(rows: Rows) -> Array:
+    """(n, rows) what tightening leaves: of a force half of what the weight leaves, where it leaves something."""
+    weight = np.abs(rows.force[..., 3]) + rows.force[..., 5]
+    most = np.max([weight[k : weight.shape[0] - PARTS + k : PARTS] for k in range(PARTS + 1)], axis=0)
+    least = np.where(most < 1.0, 0.5 * (1.0 + most), 0.0)
+    return np.pad(least, ((0, 0), (0, rows.tight_count - most.shape[1])))
+
+
 def _uses(motion: SquaredRate, rows: Rows) -> Array:
     found = np.empty((motion.knots.size - 1, rows.tight_count))
     used(np.diff(motion.knots), motion.values, rows, found)
@@ -189,11 +220,11 @@ def _tightened(answer: Answer, duals: _Duals) -> Answer:
     """On the same knots, until the rows are kept between the stations too, or nearly."""
     motion, rows, sizes = answer.motion, answer.rows, answer.sizes
     use, means = _uses(motion, rows), np.ones(rows.mean.shape[1])
-    tight, best = np.ones_like(use), answer
+    tight, floor, best = np.ones_like(use), _holding(rows), answer
     for _ in range(_ROUNDS):
         if best.use <= 1.0 + _KEPT:
             break
-        tight /= np.where(use > 1.0, use * (1.0 + _KEPT / 2), 1.0)
+        tight = np.maximum(tight / np.where(use > 1.0, use * (1.0 + _KEPT / 2), 1.0), floor)
         if (y := _kept(motion, rows, tight)) is None:
             break
         status, _, time, _ = search(sizes, rows, tight, means, y, *duals, _SAME, _CLOSELY, _STEPS, 0.0, 0.0)

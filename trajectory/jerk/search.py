@@ -51,19 +51,39 @@ def _dual_step(
     change: Array,
 ) -> tuple[float, float]:
     """The change of the duals, and how far x and duals can go along their changes, the rows being loosened."""
-    primal, of_dual = 1.0, 1.0
+    fastest_fall, fastest_dual = _TO_EDGE, _TO_EDGE
     for k in range(slack.shape[0]):
         for i in range(STATIONS):
             x, w, z = moved[k, i, 0], moved[k, i, 1], moved[k, i, 2]
-            primal = _to_the_edge(states[k, i, 0], x, primal)
-            for e in range(slack.shape[2]):
-                left, d = slack[k, i, e], dual[k, i, e]
-                fall = -(gradient[k, i, e, 0] * x + gradient[k, i, e, 1] * w + gradient[k, i, e, 2] * z)
-                fall += gradient[k, i, e, 3] * loosened
-                change[k, i, e] = (target - d * fall) / left - d
-                primal = _to_the_edge(left, fall, primal)
-                of_dual = _to_the_edge(d, change[k, i, e], of_dual)
-    return primal, of_dual
+            fastest_fall = max(fastest_fall, -x / states[k, i, 0])
+            falls, duals = _row_steps(x, w, z, loosened, slack[k, i], dual[k, i], gradient[k, i], target, change[k, i])
+            fastest_fall, fastest_dual = max(fastest_fall, falls), max(fastest_dual, duals)
+    return _TO_EDGE / fastest_fall, _TO_EDGE / fastest_dual
+
+
+@compiled
+def _row_steps(
+    x: float,
+    w: float,
+    z: float,
+    loosened: float,
+    slack: Array,
+    dual: Array,
+    gradient: Array,
+    target: float,
+    change: Array,
+) -> tuple[float, float]:
+    """Of one station: the change of the duals; the largest shares that slacks and duals lose."""
+    by_x, by_w, by_z, by_tight = gradient
+    falls, duals = 0.0, 0.0
+    for e in range(slack.size):
+        inverse = 1.0 / slack[e]
+        fall = by_x[e] * x + by_w[e] * w + by_z[e] * z - by_tight[e] * loosened
+        change[e] = (target + dual[e] * fall) * inverse - dual[e]
+        lost, lost_dual = fall * inverse, -change[e] / dual[e]
+        falls = lost if lost > falls else falls
+        duals = lost_dual if lost_dual > duals else duals
+    return falls, duals
 
 
 @compiled
@@ -104,18 +124,21 @@ def search(
     shape = (n, STATIONS, row_count(rows))
     bases, slack, next_slack = all_bases(sizes), np.empty(shape), np.empty(shape)
     states, tried, moved = np.empty((n, STATIONS, 3)), np.empty((n, STATIONS, 3)), np.empty((n, STATIONS, 3))
-    gradient, change, equations = np.empty((*shape, 4)), np.empty(shape), room_for(y.size, count)
+    gradient, change, equations = np.empty((n, STATIONS, 4, shape[2])), np.empty(shape), room_for(y.size, count)
     mean_slack, next_mean, mean_change = np.empty(count), np.empty(count), np.empty(count)
     kept = tight + loose
     states_of(bases, y, states)
-    if not (slacks_of(states, rows, kept, slack) > 0.0 and means_of(states, sizes, rows, mean_tight, mean_slack) > 0.0):
+    if not (
+        slacks_of(states, sizes, rows, kept, slack) > 0.0
+        and means_of(states, sizes, rows, mean_tight, mean_slack) > 0.0
+    ):
         return OUTSIDE, 0, math.nan, math.nan
     dual[:], mean_dual[:] = np.maximum(dual, barrier / slack), np.maximum(mean_dual, barrier / mean_slack)
     centring, time, gap = 0.15, math.nan, math.nan
     for step in range(most_steps):
         gap = (slack * dual).sum() + (mean_slack * mean_dual).sum()
         target = centring * gap / (slack.size + count)
-        gradients_of(states, rows, kept, gradient)
+        gradients_of(states, sizes, rows, kept, gradient)
         time = assemble(states, bases, sizes, rows, slack, dual, gradient, mean_tight, mean_dual, target, equations)
         if (step and gap <= tolerance * time and not price) or (price and loose < 0.0):
             return SOLVED, step, time, gap
@@ -134,7 +157,7 @@ def search(
             tried[:] = states + primal * moved
             kept[:] = tight + (loose + primal * looser)
             inside = (
-                slacks_of(tried, rows, kept, next_slack) > 0.0
+                slacks_of(tried, sizes, rows, kept, next_slack) > 0.0
                 and means_of(tried, sizes, rows, mean_tight, next_mean) > 0.0
             )
             if inside:

@@ -13,6 +13,8 @@ STATIONS = PARTS + 1  # of each interval
 WEIGHTS = np.array([1.0, 3.0, 3.0, 1.0]) / 8.0  # of their integral: Simpson's 3/8
 compiled = njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc", "nsz", "arcp"})
 _TRIES = 40
+# Of an interval's size times w, added to x: the points of Bezier of its cubic, above 0 so that the cubic is.
+_POSITIVE = np.array([2.0 / 3.0, *np.zeros(PARTS - 1), -2.0 / 3.0])
 
 
 @compiled
@@ -50,7 +52,7 @@ def states_of(bases: Array, y: Array, out: Array) -> None:
 
 
 @compiled
-def slacks_of(states: Array, rows: Rows, tight: Array, out: Array) -> float:
+def slacks_of(states: Array, sizes: Array, rows: Rows, tight: Array, out: Array) -> float:
     """What is left of each row; the least of it, of x too, over all stations."""
     least = math.inf
     forces, joints, tools = rows.force.shape[1], rows.jerk.shape[1], rows.tool.shape[1]
@@ -76,6 +78,7 @@ def slacks_of(states: Array, rows: Rows, tight: Array, out: Array) -> float:
             for j in range(tools):
                 c = rows.tool[g, j]
                 left[at + 1] = t[forces + joints + 1] - (c[0] * w * w + c[1] * w * x + c[2] * x * x)
+            left[left.size - 1] = x + _POSITIVE[i] * sizes[k] * w
             for e in range(left.size):
                 least = min(least, left[e])
     return least
@@ -100,31 +103,34 @@ def means_of(states: Array, sizes: Array, rows: Rows, tight: Array, out: Array) 
 
 
 @compiled
-def gradients_of(states: Array, rows: Rows, tight: Array, out: Array) -> None:
-    """Of each row's use by x, w and z; and of what is left by what the row is kept to."""
+def gradients_of(states: Array, sizes: Array, rows: Rows, tight: Array, out: Array) -> None:
+    """Of each row's use by x, w and z; and of what is left by what the row is kept to; (n, stations, 4, rows)."""
     forces, joints, tools = rows.force.shape[1], rows.jerk.shape[1], rows.tool.shape[1]
     out[:] = 0.0
     for k in range(states.shape[0]):
         for i in range(STATIONS):
             g = PARTS * k + i
             x, w = states[k, i, 0], states[k, i, 1]
-            rate, of = 1.0 / math.sqrt(x), out[k, i]
+            rate = 1.0 / math.sqrt(x)
             half, steep = 0.5 * rate, 0.5 * rate / x
-            of[:, 3] = 1.0
+            by_x, by_w, by_z, by_tight = out[k, i]
+            by_tight[:] = 1.0
             for j in range(forces):
                 c = rows.force[g, j]
-                of[2 * j, 0], of[2 * j, 1] = c[1] + (c[4] + c[2]) * half, c[0]
-                of[2 * j + 1, 0], of[2 * j + 1, 1] = (c[4] - c[2]) * half - c[1], -c[0]
+                by_x[2 * j], by_w[2 * j] = c[1] + (c[4] + c[2]) * half, c[0]
+                by_x[2 * j + 1], by_w[2 * j + 1] = (c[4] - c[2]) * half - c[1], -c[0]
             at = 2 * forces
             for j in range(joints):
                 c, edge = rows.jerk[g, j], tight[k, forces + j] * steep
-                of[at, 0], of[at, 1], of[at, 2], of[at, 3] = c[2] + edge, c[1], c[0], rate
-                of[at + 1, 0], of[at + 1, 1], of[at + 1, 2], of[at + 1, 3] = edge - c[2], -c[1], -c[0], rate
+                by_x[at], by_w[at], by_z[at], by_tight[at] = c[2] + edge, c[1], c[0], rate
+                by_x[at + 1], by_w[at + 1], by_z[at + 1], by_tight[at + 1] = edge - c[2], -c[1], -c[0], rate
                 at += 2
-            of[at, 0], of[at, 3] = 1.0, rows.most[g]
+            by_x[at], by_tight[at] = 1.0, rows.most[g]
             for j in range(tools):
                 c = rows.tool[g, j]
-                of[at + 1, 0], of[at + 1, 1] = c[1] * w + 2.0 * c[2] * x, 2.0 * c[0] * w + c[1] * x
+                by_x[at + 1], by_w[at + 1] = c[1] * w + 2.0 * c[2] * x, 2.0 * c[0] * w + c[1] * x
+            last = by_x.size - 1
+            by_x[last], by_w[last], by_tight[last] = -1.0, -_POSITIVE[i] * sizes[k], 0.0
 
 
 @compiled
@@ -136,7 +142,10 @@ def keeping(sizes: Array, rows: Rows, tight: Array, mean_tight: Array, y: Array)
     for _ in range(_TRIES):
         share = 1.0 - given if given < 0.7 else 0.7 * 0.64 / given
         states_of(bases, y * share, states)
-        if slacks_of(states, rows, tight, slack) > 0.0 and means_of(states, sizes, rows, mean_tight, mean_slack) > 0.0:
+        if (
+            slacks_of(states, sizes, rows, tight, slack) > 0.0
+            and means_of(states, sizes, rows, mean_tight, mean_slack) > 0.0
+        ):
             return share
         given *= 2.0
     return 0.0
@@ -144,5 +153,5 @@ def keeping(sizes: Array, rows: Rows, tight: Array, mean_tight: Array, y: Array)
 
 @compiled
 def row_count(rows: Rows) -> int:
-    """At each station."""
-    return 2 * rows.force.shape[1] + 2 * rows.jerk.shape[1] + 1 + rows.tool.shape[1]
+    """At each station: both sides of forces and jerks, x at most, tool, and x above 0."""
+    return 2 * rows.force.shape[1] + 2 * rows.jerk.shape[1] + 1 + rows.tool.shape[1] + 1
