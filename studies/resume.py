@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from design import Certificate
+from design.errors import UnreadableCertificate
+from kinematics import Mechanism
 from studies.errors import StudyError
 from studies.optimum import FILE, Optimum, committed_certificates, read_optimum
 from studies.output_folder import OutputFolder
@@ -28,7 +31,7 @@ def run_into(folder: OutputFolder, study: Study, fresh: bool, progress: Progress
         )
         robot = known.robot(study)
         outcome = designed(study, robot, progress, str(known.data["made_by"]["solver_status"]))
-        certificates = committed_certificates(study, folder.path, robot)
+        certificates = _known_certificates(folder, study, robot)
     else:
         outcome, certificates = designed(study, None, progress), {}
         if study.optimise is not None:
@@ -37,6 +40,13 @@ def run_into(folder: OutputFolder, study: Study, fresh: bool, progress: Progress
             for path in written.left:
                 progress(Lasting(f"{path}: left as an earlier command wrote it, until this one ends"))
     return certified(with_cycle(outcome, progress), certificates, progress)
+
+
+def _known_certificates(folder: OutputFolder, study: Study, robot: Mechanism) -> dict[str, Certificate]:
+    try:
+        return committed_certificates(study, folder.path, robot)
+    except UnreadableCertificate:  # of another version of this program, or gone: proved again
+        return {}
 
 
 def known_optimum(folder: OutputFolder, study: Study) -> Optimum | None:
