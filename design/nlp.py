@@ -115,7 +115,7 @@ class Problem:
         vector = self.robot.geometry.vector()
         vector[self.places()] = values
         geometry = self.robot.Geometry.from_vector(vector)
-        return type(self.robot)(geometry, self.robot.inertia, self.robot.ranges)
+        return self.robot.with_geometry(geometry)
 
 
 @dataclass(frozen=True)
