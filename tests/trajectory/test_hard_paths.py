@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from kinematics import Delta, GoughStewart, Heli4, Mechanism
-from trajectory import Limits, Repaired, RoundedPath, pieces, repair, time_optimal
+from trajectory import Limits, Repaired, RoundedPath, lower_bound, pieces, repair, time_optimal
 
 DELTA = Limits(speed=20.0, acceleration=400.0, torque=127.0)
 SETTLED = 5e-4  # relative: what two times of the law may differ by, as its grids do
@@ -64,6 +64,15 @@ def test_a_hexapod_rolls_in_place() -> None:
     robot, start = GoughStewart(), (0.0, 0.0, 0.62, 0.0, 0.0, 0.0)
     parts = timed(robot, through(robot, [start, (0.0, 0.0, 0.62, math.radians(10.0), 0.0, 0.0)]), LEGS)
     assert duration(parts) == pytest.approx(0.0791, abs=1e-4)
+
+
+def test_a_tool_that_stands_still_uses_none_of_its_own_limits() -> None:
+    robot, limits = GoughStewart(), replace(LEGS, tool_speed=0.1, tool_acceleration=1.0)
+    turn = through(robot, [(0.0, 0.0, 0.62, 0.0, 0.0, 0.0), (0.0, 0.0, 0.62, 0.0, 0.0, 0.2)])
+    (free,), (capped,) = timed(robot, turn, LEGS), timed(robot, turn, limits)
+    assert capped.motion.duration == pytest.approx(free.motion.duration, rel=SETTLED)
+    assert capped.verification.proved["tool speed"] < 1e-6
+    assert lower_bound(robot, turn, limits, 0.5) < free.motion.duration
 
 
 def test_a_turn_in_place_between_two_moves_is_a_piece_of_its_own() -> None:
