@@ -138,7 +138,7 @@ def _assignments(
         except ValueError:
             raise InvalidOption(option, text, f"numbers with '{separator}' between them") from None
         if not all(abs(v) <= LARGEST for v in values):  # NaN is not
-            raise InvalidOption(option, text, f"numbers of a size up to {LARGEST:g}")
+            raise InvalidOption(option, text, f"finite numbers, of a size up to {LARGEST:g}")
         found[name] = values
     return found
 

@@ -92,7 +92,7 @@ def test_figures_that_still_move_are_printed_with_how_far(tmp_path: Path) -> Non
     assert "not settled" in done.stdout
     assert "still move by" in " ".join(done.stdout.split())
     assert "area" in done.stdout
-    assert len(list(tmp_path.iterdir())) == 3
+    assert len(list(tmp_path.glob("map_*"))) == 3
 
 
 def test_other_bounds_and_units() -> None:
