@@ -29,6 +29,8 @@ _NEWTON = 8
 _ROUNDING = 1e-12
 _SHORTEST = 1e-6  # share of the way; where a shorter step is needed, a singularity is ahead
 _MOST = 400  # steps of any pose
+_LAST = 0.02  # share of the way within which a way that gets stuck may end on a singularity
+_HALVINGS = 60
 
 
 class _State(NamedTuple):
@@ -57,13 +59,25 @@ def continued(robot: Mechanism, joints: Array, near: Array) -> Array:
     way = target - first
     turns = [k for k, unit in enumerate(robot.joint_units) if unit == "rad"]
     way[:, turns] -= 2 * np.pi * np.round(way[:, turns] / (2 * np.pi))
-    arrived = _followed(robot, pose, first, way)
-    pose[~arrived] = np.nan
+    done = _followed(robot, pose, first, way)
+    stuck = np.flatnonzero((done < 1.0) & (done >= 1.0 - _LAST))
+    pose[stuck] = _at_double_root(robot, pose[stuck], first[stuck] + way[stuck])
+    pose[done < 1.0 - _LAST] = np.nan
     return pose.reshape(*lead, pose.shape[-1])
 
 
+def continued_where_doubtful(robot: Mechanism, joints: Array, poses: Array, doubtful: Array) -> Array:
+    """Poses (..., n) of a closed form, but continued from home where doubtful (...,) or where it did not find any."""
+    lost = ~np.isfinite(poses).all(axis=-1) & np.isfinite(joints).all(axis=-1)
+    again = doubtful | lost
+    if again.any():
+        poses = poses.copy()
+        poses[again] = continued(robot, joints[again], robot.home)
+    return poses
+
+
 def _followed(robot: Mechanism, pose: Array, first: Array, way: Array) -> Array:
-    """Move poses (k, n) along in place; which of them arrived (k,)."""
+    """Move poses (k, n) along in place; how far each came (k,), 1 at its end."""
     done, step = np.zeros(len(pose)), np.ones(len(pose))
     active = np.flatnonzero(np.isfinite(way).all(axis=1) & np.isfinite(pose).all(axis=1))
     for _ in range(_MOST):
@@ -82,7 +96,24 @@ def _followed(robot: Mechanism, pose: Array, first: Array, way: Array) -> Array:
         pose[moved], done[moved] = trial[good], reached[good]
         step[active] = np.where(good, 2.0 * share, 0.5 * share)
         active = active[(done[active] < 1.0) & (step[active] > _SHORTEST) & np.isfinite(rate)]
-    return done == 1.0
+    return done
+
+
+def _at_double_root(robot: Mechanism, pose: Array, joints: Array) -> Array:
+    """(k, n) where a way that got stuck before its end does end, on a singularity; NaN where it does not.
+
+    There Newton's method halves its error in each step.
+    """
+    before = pose.copy()
+    for _ in range(_HALVINGS):
+        state = _state(robot, pose, joints)
+        inverse = np.linalg.pinv(np.nan_to_num(state.j_x * robot.pose_units()), rcond=1e-9)
+        twist = np.einsum("kij,kj->ki", inverse, np.nan_to_num(state.gap)) * robot.pose_units()
+        size = _size(robot, twist)
+        pose = robot.moved(pose, twist * np.minimum(1.0, _LONGEST / np.maximum(size, 1e-300))[:, None])
+    moved = _size(robot, pose - before)
+    ends = (np.abs(robot.closure_gap(pose, joints)).max(axis=-1) <= 10 * _ROUNDING) & (moved <= _LONGEST)
+    return np.where(ends[:, None], pose, np.nan)
 
 
 def _closed(robot: Mechanism, pose: Array, joints: Array, moved: Array, side: Array) -> tuple[Array, Array]:

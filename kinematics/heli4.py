@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.bodies import Bodies, Particle, Rotor
-from kinematics.continuation import continued
+from kinematics.continuation import continued, continued_where_doubtful
 from kinematics.distinct import gaps, working_first
 from kinematics.geometry import TURN, angle, length, screw_pitch
 from kinematics.heli4_forward import Plates, plates
@@ -212,9 +212,18 @@ class Heli4(RotaryLimbs, RodLevel):
         return self._poses_of(joints, w, t)
 
     def working_forward(self, joints: Array) -> Array:
-        """(..., 4) -> (..., 4): on the sheet of home; where its pairs of limbs are on two, continued from there."""
+        """(..., 4) -> (..., 4): on the sheet of home.
+
+        Where not both pairs of limbs hang (or stand) clearly, beyond a singularity the outermost root may belong to
+        another assembly mode: such poses are continued from home.
+        """
         joints = self._joints(joints)
-        return self._on_sheet(joints, self._sheet) if self._sheet else continued(self, joints, self.home)
+        if not self._sheet:
+            return continued(self, joints, self.home)
+        poses = self._on_sheet(joints, self._sheet)
+        (above,) = evaluate(self.program(_above_elbows), poses, joints)
+        doubtful = np.asarray((self._sheet * above >= 0.0).any(axis=-1))
+        return continued_where_doubtful(self, joints, poses, doubtful)
 
     def assembly_modes(self, joints: Array) -> Array:
         """(4,) -> (k, 4), every real pose with these joints, at most four; the working one first."""
@@ -237,6 +246,14 @@ def _plates(model: Model) -> Plates:
     """From s_i = B_i - A_i with both plates at the origin; (18) with h_i minus the actuator's own height."""
     spheres = Heli4.platform_points(ca.SX(4, 1), model.g) - Heli4.limbs(model.g).elbows(model.joints)
     return plates(spheres, model.g.rod_length)
+
+
+def _above_elbows(robot: Heli4, model: Model) -> Build:
+    """(2,) how high each pair of limbs holds its plate above the middle between its elbows, both moved to the plate."""
+    to_elbow = robot.limbs(model.g).elbows(model.joints) - robot.platform_points(model.pose, model.g)
+    return [model.pose, model.joints], [
+        -ca.vertcat(to_elbow[2, 0] + to_elbow[2, 1], to_elbow[2, 2] + to_elbow[2, 3]) / 2
+    ]
 
 
 def _quartic(_: Heli4, model: Model) -> Build:

@@ -17,9 +17,9 @@ import casadi as ca
 import numpy as np
 
 from kinematics.bodies import Bodies, Particle, Rotor
-from kinematics.continuation import continued
+from kinematics.continuation import continued, continued_where_doubtful
 from kinematics.distinct import distinct, gaps, working_first
-from kinematics.geometry import angle, length, ratio
+from kinematics.geometry import TURN, angle, length, ratio
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.linear import determinant
@@ -215,9 +215,22 @@ class Par4(RotaryLimbs):
         return result.reshape(joints.shape)
 
     def working_forward(self, joints: Array) -> Array:
-        """(..., 4) -> (..., 4): the lowest mode or the highest, as home is; else continued from home."""
+        """(..., 4) -> (..., 4): the lowest mode or the highest, as home is; else continued from home.
+
+        Where not both halves hang (or stand) clearly, beyond a singularity the outermost mode may be another one than
+        home's: such poses are continued from home.
+        """
         joints = self._joints(joints)
-        return self._outermost(joints, self._side) if self._side else continued(self, joints, self.home)
+        if self._side:
+            poses = self._outermost(joints, self._side)
+            (above,) = evaluate(self.program(_above_elbows), poses, joints)
+            doubtful = np.asarray((self._side * above >= 0.0).any(axis=-1))
+            poses = continued_where_doubtful(self, joints, poses, doubtful)
+        else:
+            poses = continued(self, joints, self.home)
+        turn = TURN * self.geometry.amplification  # of the bars: the same place
+        poses[..., 3] -= turn * np.round(poses[..., 3] / turn)
+        return poses
 
     def assembly_modes(self, joints: Array) -> Array:
         """(4,) -> (k, 4), every isolated real pose with these joints, at most eight; the working one first."""
@@ -241,6 +254,14 @@ def _spheres(robot: Par4, model: Model) -> Build:
     g = model.g
     centres = robot.limbs(g).elbows(model.joints) - robot.platform_points(ca.SX(4, 1), g)
     return [model.joints], [(centres + robot.half_bar(ca.SX(0), g) @ ca.DM(_HALF).T).T]
+
+
+def _above_elbows(robot: Par4, model: Model) -> Build:
+    """(2,) how high each half is above the middle between its elbows."""
+    to_elbow = robot.limbs(model.g).elbows(model.joints) - robot.platform_points(model.pose, model.g)
+    return [model.pose, model.joints], [
+        -ca.vertcat(to_elbow[2, 0] + to_elbow[2, 1], to_elbow[2, 2] + to_elbow[2, 3]) / 2
+    ]
 
 
 def _closure_and_j_x(_: Par4, model: Model) -> Build:

@@ -14,6 +14,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.bodies import Bodies, InertiaRecord, Particle
+from kinematics.continuation import continued_where_doubtful
 from kinematics.distinct import distinct
 from kinematics.geometry import TURN, GeometryRecord, Points, length
 from kinematics.interpreter import evaluate
@@ -170,7 +171,8 @@ class Planar(Mechanism):
         rows, first = np.unique(rows[order], return_index=True)
         result = np.full((len(centres), 3), np.nan)
         result[rows] = _poses(p, theta)[order[first]]
-        return result.reshape(joints.shape)
+        none = np.zeros(joints.shape[:-1], dtype=bool)
+        return continued_where_doubtful(self, _bounded(joints), result.reshape(joints.shape), none)
 
     def _side(self, p: Array, theta: Array, joints: Array) -> Array:
         """(k,) sign of det J_x, up to a sign that is the same everywhere."""
