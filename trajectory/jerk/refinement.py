@@ -37,8 +37,6 @@ _LITTLE = 0.1  # share of a motion's squared rate: with less it is a poor start
 _PRESSED = (1e-2,)  # barriers of further tries
 _HELD = 1.1  # by what more than needed rows are loosened
 _INSIDE = 1e-2  # barrier where a motion far from the rows is sought
-_RAISED = 1e-3  # of the largest x, where a motion would stand
-_PLACES = 12  # of each interval, where it is looked at
 _PRICE = 1e3  # of what loosens the forces, in units of the slow motion's time
 _FASTEST = 1e6  # of x in units of the slow motion's, where nothing bounds it
 _SLOWER = 0.98  # of the rate that just keeps every row
@@ -127,7 +125,7 @@ def _on_finer_knots(problem: Problem, edges: Array, found: _Found, intervals: in
     over = np.clip(_uses(before.motion, before.rows).max(axis=1) - 1.0, 0.0, 1.0)
     knots = next_mesh(edges, before.motion, over, intervals)
     rows = _in_unit(rows_of(*problem, knots), before.unit)
-    start = SquaredRate(knots, before.motion.at(knots))
+    start = before.motion.on(knots)
     return _searched(start, rows, before.unit, found.duals.means, _NEAR, _CLOSELY)
 
 
@@ -179,23 +177,15 @@ def _kept(start: SquaredRate, rows: Rows, tight: Array) -> Array | None:
     them, and drawn in again. Where it helps too late, a motion found so is the better start.
     """
     _, ones, sizes = _untightened(rows, start)
-    share = keeping(sizes, rows, tight, ones, start.values)
+    share = keeping(sizes, rows, tight, start.values)
     if share > _LITTLE:
         return share * start.values
-    moving = _never_at_rest(start)
-    loose = _HELD * float((_uses(moving, rows) - tight).max()) + _HELD - 1.0
-    y, duals = moving.values.copy(), _Duals(_no_duals(sizes.size, rows), np.zeros(ones.size))
+    loose = _HELD * float((_uses(start, rows) - tight).max()) + _HELD - 1.0
+    y, duals = start.values.copy(), _Duals(_no_duals(sizes.size, rows), np.zeros(ones.size))
     status, *_ = search(sizes, rows, tight, ones, y, *duals, _INSIDE, 0.0, _DRAWING, loose, _PRICE)
     if status == SOLVED:
         return y
     return share * start.values if share else None
-
-
-def _never_at_rest(motion: SquaredRate) -> SquaredRate:
-    """With x raised alike everywhere until it is above 0 between the knots too."""
-    x = motion.finer(_PLACES).values[::2]
-    raised = 0.0 if x.min() > 0.0 else float(_RAISED * x.max() - 2.0 * x.min())
-    return motion._replace(values=motion.values + np.tile([raised, 0.0], motion.knots.size))
 
 
 def _no_duals(intervals: int, rows: Rows) -> Array:

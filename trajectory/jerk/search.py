@@ -1,10 +1,11 @@
 """The interior point: the squared rate x of least time under `Rows`, in numba, without a general sparse solver.
 
 Unknowns are x and w = x' / 2 at the knots of u, a cubic between; the time is the integral of 1 / sqrt(x). Every iterate
-keeps every row strictly, so each is a motion. A row that is not linear is met by its tangent: that of the jerk,
-|linear| <= 1 / sqrt(x), and those with sqrt(x) ahead of it are kept by what keeps their tangents, so that a step needs
-no search; the others are convex. Their curvature is left out where it is negative. Neighbours alone are coupled: the
-Newton matrix has three diagonals below its own, but for the mean square torque, which adds one rank a joint.
+keeps every row strictly, so each is a motion; mean squares are met at the end alone. A row that is not linear is met by
+its tangent: that of the jerk, |linear| <= 1 / sqrt(x), and those with sqrt(x) ahead of it are kept by what keeps their
+tangents, so that a step needs no search; the others are convex. Their curvature is left out where it is negative.
+Neighbours alone are coupled: the Newton matrix has three diagonals below its own, but for the mean square torque, which
+adds one rank a joint.
 """
 
 from __future__ import annotations
@@ -14,12 +15,12 @@ import math
 import numpy as np
 
 from trajectory.jerk.banded import LEAD
+from trajectory.jerk.compiled import compiled
 from trajectory.jerk.newton import assemble, room_for, solve_step
 from trajectory.jerk.rows import Array, Rows
 from trajectory.jerk.stations import (
     STATIONS,
     all_bases,
-    compiled,
     gradients_of,
     means_of,
     row_count,
@@ -29,6 +30,7 @@ from trajectory.jerk.stations import (
 
 SOLVED, OUTSIDE, SINGULAR, STUCK, SLOW = 0, 1, 2, 3, 4
 _TO_EDGE = 0.95  # share of the way to the nearest row that a step goes
+_MEAN_SLACK = 1e-2  # in units of the time: what a mean square has left at first, at least
 _BACK = 0.7  # of a step that broke a row
 _TRIES = 40
 
@@ -125,14 +127,13 @@ def search(
     bases, slack, next_slack = all_bases(sizes), np.empty(shape), np.empty(shape)
     states, tried, moved = np.empty((n, STATIONS, 3)), np.empty((n, STATIONS, 3)), np.empty((n, STATIONS, 3))
     gradient, change, equations = np.empty((n, STATIONS, 4, shape[2])), np.empty(shape), room_for(y.size, count)
-    mean_slack, next_mean, mean_change = np.empty(count), np.empty(count), np.empty(count)
+    mean_left, mean_fall, mean_change = np.empty(count), np.empty(count), np.empty(count)
     kept = tight + loose
     states_of(bases, y, states)
-    if not (
-        slacks_of(states, sizes, rows, kept, slack) > 0.0
-        and means_of(states, sizes, rows, mean_tight, mean_slack) > 0.0
-    ):
+    if not slacks_of(states, sizes, rows, kept, slack) > 0.0:
         return OUTSIDE, 0, math.nan, math.nan
+    means_of(states, sizes, rows, mean_tight, mean_left)
+    mean_slack = np.maximum(mean_left, _MEAN_SLACK)
     dual[:], mean_dual[:] = np.maximum(dual, barrier / slack), np.maximum(mean_dual, barrier / mean_slack)
     centring, time, gap = 0.15, math.nan, math.nan
     for step in range(most_steps):
@@ -140,26 +141,25 @@ def search(
         target = centring * gap / (slack.size + count)
         gradients_of(states, sizes, rows, kept, gradient)
         time = assemble(states, bases, sizes, rows, slack, dual, gradient, mean_tight, mean_dual, target, equations)
-        if (step and gap <= tolerance * time and not price) or (price and loose < 0.0):
+        missed = mean_slack - mean_left
+        close = gap + np.abs(missed).sum() <= tolerance * time
+        if (step and close and not price) or (price and loose < 0.0):
             return SOLVED, step, time, gap
-        found, looser = solve_step(equations, mean_slack, mean_dual, target, price)
+        found, looser = solve_step(equations, mean_slack, mean_dual, (target + mean_dual * missed) / mean_slack, price)
         if not found:
             return SINGULAR, step, time, gap
         states_of(bases, equations.right[LEAD:], moved)
         primal, of_dual = _dual_step(moved, states, slack, dual, gradient, target, looser, change)
         for j in range(count):
-            fall = -(equations.means[j] * equations.right).sum()
-            mean_change[j] = (target - mean_dual[j] * fall) / mean_slack[j] - mean_dual[j]
-            primal = _to_the_edge(mean_slack[j], fall, primal)
+            mean_fall[j] = -missed[j] - (equations.means[j] * equations.right).sum()
+            mean_change[j] = (target - mean_dual[j] * mean_fall[j]) / mean_slack[j] - mean_dual[j]
+            primal = _to_the_edge(mean_slack[j], mean_fall[j], primal)
             of_dual = _to_the_edge(mean_dual[j], mean_change[j], of_dual)
         inside = False
         for _ in range(_TRIES):
             tried[:] = states + primal * moved
             kept[:] = tight + (loose + primal * looser)
-            inside = (
-                slacks_of(tried, sizes, rows, kept, next_slack) > 0.0
-                and means_of(tried, sizes, rows, mean_tight, next_mean) > 0.0
-            )
+            inside = slacks_of(tried, sizes, rows, kept, next_slack) > 0.0
             if inside:
                 break
             primal *= _BACK
@@ -167,7 +167,9 @@ def search(
             return STUCK, step, time, gap
         y += primal * equations.right[LEAD:]
         loose += primal * looser
-        states[:], slack[:], mean_slack[:] = tried, next_slack, next_mean
+        states[:], slack[:] = tried, next_slack
+        mean_slack += primal * mean_fall
+        means_of(states, sizes, rows, mean_tight, mean_left)
         dual += of_dual * change
         mean_dual += of_dual * mean_change
         reached = min(primal, of_dual)
