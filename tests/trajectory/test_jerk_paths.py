@@ -11,7 +11,18 @@ import pytest
 from kinematics import Delta, GoughStewart, Heli4, Mechanism
 from kinematics.drive_train import DriveTrain
 from kinematics.dynamics import inverse_dynamics
-from trajectory import Limits, Part, PathBeyondLimit, Repaired, RoundedPath, jerk_limited, pieces, repair, time_optimal
+from trajectory import (
+    Limits,
+    Part,
+    PathBeyondLimit,
+    Repaired,
+    RoundedPath,
+    jerk_limited,
+    pieces,
+    repair,
+    time_optimal,
+    verify,
+)
 
 HELI4 = Limits(speed=20.0, torque=127.0, jerk=1e5)
 DELTA = Limits(speed=20.0, acceleration=400.0, torque=127.0, jerk=1e5)
@@ -123,6 +134,8 @@ def test_where_drives_cannot_hold_the_weight_a_path_is_passed_at_speed() -> None
     limits = Limits(speed=20.0, torque=0.995 * float(weights.max()), jerk=1e5)
     assert max(weights[0], weights[-1]) < limits.torque < weights.max()
     without = time_optimal(robot, path, replace(limits, jerk=None), 1.0).duration
-    assert 0.999 * without < jerk_limited(robot, path, limits, 1.0).duration < 1.01 * without
+    found = jerk_limited(robot, path, limits, 1.0)
+    assert 0.995 * without < found.duration < 1.01 * without
+    assert verify(robot, found, limits, 1.0).ok
     with pytest.raises(PathBeyondLimit, match="the weight alone"):
         jerk_limited(robot, path, replace(limits, torque=1.001 * float(max(weights[0], weights[-1]))), 1.0)

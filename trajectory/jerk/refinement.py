@@ -37,6 +37,7 @@ _LITTLE = 0.1  # share of a motion's squared rate: with less it is a poor start
 _PRESSED = (1e-2,)  # barriers of further tries
 _HELD = 1.1  # by what more than needed rows are loosened
 _INSIDE = 1e-2  # barrier where a motion far from the rows is sought
+_ROOM = 5e-4  # of every row that is left where the drives cannot hold the weight: there no stretch mends a motion
 _PRICE = 1e3  # of what loosens the forces, in units of the slow motion's time
 _FASTEST = 1e6  # of x in units of the slow motion's, where nothing bounds it
 _SLOWER = 0.98  # of the rate that just keeps every row
@@ -167,7 +168,8 @@ def _searched(
 def _untightened(rows: Rows, motion: SquaredRate) -> tuple[Array, Array, Array]:
     """What rows and means are kept to at first, and the sizes of the intervals."""
     sizes = np.diff(motion.knots)
-    return np.ones((sizes.size, rows.tight_count)), np.ones(rows.mean.shape[1]), sizes
+    kept = 1.0 if weight_use(rows) <= 1.0 else 1.0 - _ROOM
+    return np.full((sizes.size, rows.tight_count), kept), np.ones(rows.mean.shape[1]), sizes
 
 
 def _kept(start: SquaredRate, rows: Rows, tight: Array) -> Array | None:
@@ -210,11 +212,12 @@ def _tightened(answer: Answer, duals: _Duals) -> Answer:
     """On the same knots, until the rows are kept between the stations too, or nearly."""
     motion, rows, sizes = answer.motion, answer.rows, answer.sizes
     use, means = _uses(motion, rows), np.ones(rows.mean.shape[1])
-    tight, floor, best = np.ones_like(use), _holding(rows), answer
+    (tight, _, _), floor, best = _untightened(rows, motion), _holding(rows), answer
+    aim = float(tight[0, 0])
     for _ in range(_ROUNDS):
-        if best.use <= 1.0 + _KEPT:
+        if best.use <= aim + _KEPT:
             break
-        tight = np.maximum(tight / np.where(use > 1.0, use * (1.0 + _KEPT / 2), 1.0), floor)
+        tight = np.maximum(tight / np.where(use > aim, use / aim * (1.0 + _KEPT / 2), 1.0), floor)
         if (y := _kept(motion, rows, tight)) is None:
             break
         status, _, time, _ = search(sizes, rows, tight, means, y, *duals, _SAME, _CLOSELY, _STEPS, 0.0, 0.0)
