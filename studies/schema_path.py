@@ -112,7 +112,7 @@ class Waypoint(Model):
     coordinates: dict[str, float]
     """By the pose's names [m or rad]."""
     blend: Annotated[float, Field(ge=0), Key("a length >= 0", LENGTH)] = 0.0
-    """What the corner takes off both of its legs; 0 stops there."""
+    """What the corner takes off both of its legs; 0 stops there, unless the path goes straight on."""
 
     @model_validator(mode="before")
     @classmethod

@@ -88,7 +88,7 @@ class Trajectory(Model):
     law: Annotated[Literal["jerk", "toppra", "free"], Key("one of", choices=LAWS)] = "jerk"
     """How it is timed; `toppra` keeps no jerk limit, `free` finds the path too."""
     grid: Annotated[int, Field(ge=1000, le=1_000_000), Key("a whole number from 1000 to 1000000")] = 2000
-    """Points along the path."""
+    """Points along the path, at first: the law `toppra` adds what it needs."""
     period: Annotated[Positive, Key("a time > 0 (s)")] = 0.001
     """Of the set-points [s]."""
     cycle: Annotated[Cycle | None, table_of(Cycle)] = None

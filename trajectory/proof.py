@@ -18,6 +18,7 @@ from trajectory.usage import uses
 
 _PARTS = 4000  # of the whole motion at first, about
 _CLOSE = 2e-5  # relative: by how much a bound may exceed the highest use seen
+_LITTLE = 1e-6  # of a limit: no bound need be closer to what stands still
 _CUTS = 4  # of a part that is cut
 _ROUNDS = 6  # of cutting; what is still open then keeps its bound
 _SLACK = 1e-11  # relative: more than what evaluation in double arithmetic is off by
@@ -47,7 +48,7 @@ def proved_use(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: fl
         for name, ratio in least.items():
             seen[name] = max(seen.get(name, 0.0), float(np.nan_to_num(ratio, nan=0.0).max()))
             if round_ < _ROUNDS:
-                open_ |= ~(most[name] <= seen[name] * (1.0 + _CLOSE)).all(axis=-1)
+                open_ |= ~(most[name] <= max(seen[name] * (1.0 + _CLOSE), _LITTLE)).all(axis=-1)
         closed = ~open_
         for name, ratio in most.items():
             highest = float(np.nan_to_num(ratio[closed], nan=np.inf).max(initial=0.0)) * (1.0 + _SLACK)

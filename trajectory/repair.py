@@ -82,8 +82,8 @@ def repair(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float)
         after = verify(robot, stretched, limits, payload)
         if after.ok:
             return Repaired(stretched, factor * (1.0 + more), before, after)
-        if not after.proved:
-            break  # more than a bound fails
+        if not after.failures.keys() <= mendable:
+            break
     raise LimitsExceeded(after.failures, 1.0)
 
 

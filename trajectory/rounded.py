@@ -149,10 +149,10 @@ class RoundedPath:
     def _layout(self) -> Layout:
         count, points = places(self.pose_names), self._points
         in_place = turning_in_place(points)
-        for k in np.flatnonzero(np.append(in_place, False) | np.append(False, in_place)):
-            if None in self.poses[k]:
-                name = self.pose_names[self.poses[k].index(None)]
-                raise InvalidPath(int(k) + 1, name, None, "a finite number: the tool point stands still there")
+        for k in np.flatnonzero(in_place).tolist():
+            if None in (*self.poses[k], *self.poses[k + 1]):
+                expected = f"another one than that of pose {k + 1}, or all angles of both to turn the tool there"
+                raise InvalidPath(k + 2, "place", points[k + 1].tolist(), expected)
         angles = np.array([pose[count:] for pose in self.poses], dtype=float)  # NaN where none is given
         turns = np.where(in_place, np.linalg.norm(np.diff(angles, axis=0), axis=1), 0.0)
         return laid_out(points, (0.0, *self.blends, 0.0), in_place, turns)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from kinematics import Delta, GoughStewart, Heli4, Mechanism
-from trajectory import Limits, Repaired, RoundedPath, pieces, repair, time_optimal
+from trajectory import Limits, Repaired, RoundedPath, lower_bound, pieces, repair, time_optimal
 
 DELTA = Limits(speed=20.0, acceleration=400.0, torque=127.0)
 SETTLED = 5e-4  # relative: what two times of the law may differ by, as its grids do
@@ -42,9 +42,9 @@ def test_a_meander_with_small_corners_is_timed() -> None:
 def test_a_circle_of_many_waypoints_takes_as_long_as_its_tool_can_turn() -> None:
     """On a circle of radius r the tool's acceleration v^2 / r alone bounds the speed, but for the corners' ripple."""
     robot, radius, cap = Delta(), 0.1, 20.0
-    angles = np.linspace(0.0, 2.0 * math.pi, 41)
-    circle = np.stack([radius * np.cos(angles), radius * np.sin(angles), np.full(41, -0.75)], axis=-1)
-    blends = np.full(39, 0.49 * 2.0 * radius * math.sin(math.pi / 40))
+    angles = np.linspace(0.0, 2.0 * math.pi, 13)
+    circle = np.stack([radius * np.cos(angles), radius * np.sin(angles), np.full(13, -0.75)], axis=-1)
+    blends = np.full(11, 0.49 * 2.0 * radius * math.sin(math.pi / 12))
     parts = timed(robot, through(robot, circle, blends), Limits(speed=1e3, tool_acceleration=cap))
     steady = 2.0 * math.pi * radius / math.sqrt(cap * radius)
     assert (
@@ -64,6 +64,15 @@ def test_a_hexapod_rolls_in_place() -> None:
     robot, start = GoughStewart(), (0.0, 0.0, 0.62, 0.0, 0.0, 0.0)
     parts = timed(robot, through(robot, [start, (0.0, 0.0, 0.62, math.radians(10.0), 0.0, 0.0)]), LEGS)
     assert duration(parts) == pytest.approx(0.0791, abs=1e-4)
+
+
+def test_a_tool_that_stands_still_uses_none_of_its_own_limits() -> None:
+    robot, limits = GoughStewart(), replace(LEGS, tool_speed=0.1, tool_acceleration=1.0)
+    turn = through(robot, [(0.0, 0.0, 0.62, 0.0, 0.0, 0.0), (0.0, 0.0, 0.62, 0.0, 0.0, 0.2)])
+    (free,), (capped,) = timed(robot, turn, LEGS), timed(robot, turn, limits)
+    assert capped.motion.duration == pytest.approx(free.motion.duration, rel=SETTLED)
+    assert capped.verification.proved["tool speed"] < 1e-6
+    assert lower_bound(robot, turn, limits, 0.5) < free.motion.duration
 
 
 def test_a_turn_in_place_between_two_moves_is_a_piece_of_its_own() -> None:
