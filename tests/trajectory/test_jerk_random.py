@@ -1,4 +1,4 @@
-"""Two hundred random paths of 4 to 12 points, corners of 1 to 25 % of a leg, on three robots: timed and within limits."""
+"""Two hundred random paths with corners of 1 to 25 % of a leg: the law `jerk` times them, within every limit."""
 
 from __future__ import annotations
 
