@@ -80,6 +80,8 @@ def _with_waypoints(study: Study, file: TomlFile, pose_names: tuple[str, ...]) -
         )
         path = path.model_copy(update={"waypoint": waypoints})
         return study.model_copy(update={"trajectory": study.trajectory.model_copy(update={"path": path})})
+    if len(path.waypoint) == 1:
+        raise StudyError([file.problem((*key, "waypoint"), "one waypoint", "two or more")])
     try:
         path_of(study.trajectory, pose_names)
     except InvalidPath as error:

@@ -163,6 +163,12 @@ def test_a_way_that_ends_where_it_starts_is_a_closed_cycle_and_no_half(tmp_path:
         ("", PLANAR, "trajectory.path", "file, waypoint, payload"),
         (CYCLE + 'size = "25/305/25"\n' + ROWS, HELI4, "trajectory.path", "no such table beside [trajectory.cycle]"),
         ("[trajectory.path]\npayload = 1.0\n", HELI4, "trajectory.path", "one of the two"),
+        (
+            "[[trajectory.path.waypoint]]".join(ROWS.split("[[trajectory.path.waypoint]]")[:2]),
+            HELI4,
+            "path.waypoint",
+            "two or more",
+        ),
         (ROWS.replace("payload", 'file = "a.csv"\npayload'), HELI4, "trajectory.path", "one of the two"),
         (ROWS.replace("blend_mm = 30", "blend_mm = 101"), HELI4, "path.waypoint", "0.1 m"),
         (ROWS.replace("blend_mm = 30", "blend_mm = -1"), HELI4, "path.waypoint.blend_mm", "a length >= 0"),
