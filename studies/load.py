@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
+from kinematics.errors import InvalidGeometry
 from studies.against_mechanism import faults, study_table
 from studies.errors import KeyPath, Problem, StudyError, spelled
 from studies.mechanisms import mechanism_class, mechanism_names
@@ -52,6 +53,11 @@ def load_study(path: Path) -> Study:
     if problems:
         raise StudyError(problems)
     assert mechanism is not None
+    try:
+        mechanism.Geometry(**study.geometry)
+    except InvalidGeometry as error:
+        key = conversion.spelling.get(("geometry", error.field), ("geometry",))
+        raise StudyError([file.problem(key, spelled(file.value(key)), error.expected)]) from error
     return _with_waypoints(study, file, mechanism.pose_names)
 
 

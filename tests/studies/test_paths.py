@@ -187,6 +187,15 @@ def test_a_fault_is_told_with_its_key(
     assert problems[0].line is not None
 
 
+def test_what_the_geometry_as_a_whole_refuses_is_told_at_its_key(tmp_path: Path) -> None:
+    region = "".join(f"{name} = 0\n" for name in ("x", "y", "z", "roll", "pitch", "yaw"))
+    frame = "[[2, 0, 0, 0], [0, 2, 0, 0], [0, 0, 2, 0], [0, 0, 0, 1]]"
+    text = f'title = "-"\nmechanism = "GoughStewart"\n[geometry]\nE = {frame}\n[region]\nkind = "box"\n{region}'
+    (tmp_path / "study.toml").write_text(text)
+    with pytest.raises(StudyError, match=r"study\.toml:4: geometry\.E: found .* expected a rotation and a translation"):
+        load_study(tmp_path / "study.toml")
+
+
 @pytest.mark.parametrize(("name", "found"), [("none.csv", "no such file"), ("study.toml", "no CSV file")])
 def test_a_file_of_waypoints_that_cannot_be_is_told_at_its_key(tmp_path: Path, name: str, found: str) -> None:
     with pytest.raises(StudyError, match=rf'trajectory\.path\.file: found "{name}", {found}; expected a \.csv file'):
