@@ -14,8 +14,9 @@ from types import SimpleNamespace
 import casadi as ca
 import numpy as np
 
+from kinematics.aspect import in_aspect, nearest_in_aspect
 from kinematics.bodies import Bodies, Particle, Rotor
-from kinematics.continuation import continued
+from kinematics.continuation import polished
 from kinematics.distinct import gaps, working_first
 from kinematics.geometry import TURN, angle, length, screw_pitch
 from kinematics.heli4_forward import Plates, plates
@@ -41,6 +42,7 @@ _UPPER = (0.0, 0.0, 1.0, 1.0)  # which limbs hold the plate that rides on the sc
 _DEG = math.pi / 180.0
 _E_Z = ca.DM([0, 0, 1])
 _SAME = 1e-6  # rad, or of the robot's size: poses that differ by no more are one
+_OPEN = 1e-12  # rad, or of the robot's size: by what displacement a closed form may miss
 
 
 @dataclass(frozen=True)
@@ -212,24 +214,41 @@ class Heli4(RotaryLimbs, RodLevel):
         return self._poses_of(joints, w, t)
 
     def working_forward(self, joints: Array) -> Array:
-        """(..., 4) -> (..., 4): on the sheet of home; where its pairs of limbs are on two, continued from there."""
+        """(..., 4) -> (..., 4): the pose of home's aspect, mostly on home's sheet."""
         joints = self._joints(joints)
-        return self._on_sheet(joints, self._sheet) if self._sheet else continued(self, joints, self.home)
+        flat = joints.reshape(-1, 4)
+        poses = self._on_sheet(flat, self._sheet) if self._sheet else np.full(flat.shape, np.nan)
+        kept = in_aspect(self, poses, flat) & ~self._open(poses, flat) & (self._sheet != 0)
+        if not kept.all():
+            rows, found = self._candidates(flat[~kept])
+            poses[~kept] = nearest_in_aspect(self, rows, found, flat[~kept])
+        return poses.reshape(joints.shape)
+
+    def _candidates(self, joints: Array) -> tuple[Array, Array]:
+        """(k, 4) joints -> rows (j,) and poses (j, 4), every real one, in the order of w."""
+        in_w, in_t, kappa = evaluate(self.program(_quartics), joints)
+        # w t = kappa: each unknown serves where it is the larger one, up to a factor that no symmetry makes a tie.
+        least, tie = np.sqrt(np.abs(kappa)), 0.9
+        w, t = real_roots(in_w), real_roots(in_t)
+        by_w = np.nonzero((np.abs(w) >= tie * least) & (w != 0.0))
+        by_t = np.nonzero((np.abs(t) >= least / tie) & (t != 0.0))
+        rows = np.concatenate([by_w[0], by_t[0]])
+        w, t = w[by_w], t[by_t]
+        found = np.concatenate([w, kappa[by_t[0], 0] / t]), np.concatenate([kappa[by_w[0], 0] / w, t])
+        order = np.lexsort((found[0], rows))
+        rows, poses = rows[order], self._poses_of(joints[rows[order]], found[0][order], found[1][order])
+        exact = polished(self, poses, joints[rows], 3)
+        lost = self._open(poses, joints[rows]) & np.isfinite(exact).all(axis=1)  # else on a singularity
+        return rows, np.where(lost[:, None], exact, poses)
+
+    def _open(self, poses: Array, joints: Array) -> Array:
+        """(k,) whether a closed form lost digits on the way."""
+        return np.abs(self.closure_gap(poses, joints)).max(axis=-1) > _OPEN
 
     def assembly_modes(self, joints: Array) -> Array:
         """(4,) -> (k, 4), every real pose with these joints, at most four; the working one first."""
-
         joints = self._one(joints)
-        in_w, in_t, (kappa,) = evaluate(self.program(_quartics), joints)
-        # w t = kappa: each unknown serves where it is the larger one, up to a factor that no symmetry makes a tie.
-        least, tie = np.sqrt(np.abs(kappa)), 0.9
-        w, t = (
-            roots[(np.abs(roots) >= part * least) & (roots != 0.0)]
-            for roots, part in ((real_roots(in_w), tie), (real_roots(in_t), 1 / tie))
-        )
-        found = np.concatenate([np.stack([w, kappa / w]), np.stack([kappa / t, t])], axis=1)
-        w, t = found[:, np.argsort(found[0])]
-        poses = self._poses_of(np.broadcast_to(joints, (w.size, 4)), w, t)
+        _, poses = self._candidates(joints[None])
         return working_first(poses, self.forward(joints), self.geometry.size)
 
 
