@@ -31,6 +31,8 @@ _ROUNDING = 1e-12
 _CLOSED = 1e-11  # by what displacement a closure may be missed, in the same sizes
 _SHORTEST = 1e-6  # share of the way; where a shorter step is needed, a singularity is ahead
 _MOST = 400  # steps of any pose
+_LAST = 0.02  # share of the way within which a way that gets stuck may end on a singularity
+_HALVINGS = 60
 
 
 class State(NamedTuple):
@@ -62,13 +64,15 @@ def continued(robot: Mechanism, joints: Array, near: Array) -> Array:
     way = np.where(np.isfinite(target), target, np.nan) - first
     turns = [k for k, unit in enumerate(robot.joint_units) if unit == "rad"]
     way[:, turns] -= 2 * np.pi * np.round(way[:, turns] / (2 * np.pi))
-    arrived = _followed(robot, pose, first, way)
-    pose[~arrived] = np.nan
+    done = _followed(robot, pose, first, way)
+    stuck = np.flatnonzero((done < 1.0) & (done >= 1.0 - _LAST))
+    pose[stuck] = _at_double_root(robot, pose[stuck], first[stuck] + way[stuck])
+    pose[done < 1.0 - _LAST] = np.nan
     return pose.reshape(*lead, pose.shape[-1])
 
 
 def _followed(robot: Mechanism, pose: Array, first: Array, way: Array) -> Array:
-    """Move poses (k, n) along in place; which of them arrived (k,)."""
+    """Move poses (k, n) along in place; how far each came (k,), 1 at its end."""
     done, step = np.zeros(len(pose)), np.ones(len(pose))
     active = np.flatnonzero(np.isfinite(way).all(axis=1) & np.isfinite(pose).all(axis=1))
     for _ in range(_MOST):
@@ -87,7 +91,24 @@ def _followed(robot: Mechanism, pose: Array, first: Array, way: Array) -> Array:
         pose[moved], done[moved] = trial[good], reached[good]
         step[active] = np.where(good, 2.0 * share, 0.5 * share)
         active = active[(done[active] < 1.0) & (step[active] > _SHORTEST) & np.isfinite(rate)]
-    return done == 1.0
+    return done
+
+
+def _at_double_root(robot: Mechanism, pose: Array, joints: Array) -> Array:
+    """(k, n) where a way that got stuck before its end does end, on a singularity; NaN where it does not.
+
+    There Newton's method halves its error in each step.
+    """
+    before = pose.copy()
+    for _ in range(_HALVINGS):
+        state = state_at(robot, pose, joints)
+        inverse = np.linalg.pinv(np.nan_to_num(state.j_x * robot.pose_units()), rcond=1e-9)
+        twist = np.einsum("kij,kj->ki", inverse, np.nan_to_num(state.gap)) * robot.pose_units()
+        size = _size(robot, twist)
+        pose = robot.moved(pose, twist * np.minimum(1.0, _LONGEST / np.maximum(size, 1e-300))[:, None])
+    moved = _size(robot, pose - before)
+    ends = (np.abs(robot.closure_gap(pose, joints)).max(axis=-1) <= 10 * _ROUNDING) & (moved <= _LONGEST)
+    return np.where(ends[:, None], pose, np.nan)
 
 
 def _closed(

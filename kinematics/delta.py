@@ -31,6 +31,7 @@ from kinematics.rounding import not_below_zero
 
 _DEG = math.pi / 180.0
 _SAME = 1e-6  # of a rod: rounding parts the two poses of a double root by no more
+_CLOSED = 1e-9  # of the robot's size: a pose that misses its rods by more is none
 
 
 @dataclass(frozen=True)
@@ -121,7 +122,9 @@ class Delta(RotaryLimbs):
     def _both(self, joints: Array) -> Array:
         """(..., 3) -> (2, ..., 3), the plate on either side of the elbows' plane; NaN where there is none."""
         both: Array = np.stack(evaluate(self.program(_spheres), joints))
-        return np.where(np.isfinite(both).all(axis=-1, keepdims=True), both, np.nan)
+        with np.errstate(invalid="ignore"):  # with the three centres all but on one line, rounding is all that is left
+            closed = (np.abs(self.closure_gap(both, np.stack([joints, joints]))) <= _CLOSED).all(axis=-1)
+        return np.where(closed[..., None], both, np.nan)
 
     @cached_property
     def _side(self) -> int:

@@ -6,6 +6,7 @@ import numpy as np
 
 _EXACT = 1e-9  # distance of solutions that are one, where the equations are regular
 _ROUNDING = 1e-14
+_DOUBLE = 1e-6  # rounding parts the two poses of a double root by no more
 
 
 def distinct(apart: np.ndarray, regularity: np.ndarray) -> list[int]:
@@ -29,8 +30,11 @@ def gaps(poses: np.ndarray, pose: np.ndarray, size: float) -> np.ndarray:
 
 
 def working_first(poses: np.ndarray, working: np.ndarray, size: float) -> np.ndarray:
-    """Poses (k, n) in their order, but first the one that is nearest to the working one (n,), if that exists."""
-    if not len(poses) or not np.isfinite(working).all():
+    """Poses (k, n) in their order, but the working one (n,) first, if that exists."""
+    if not np.isfinite(working).all():
         return poses
-    nearest = int(gaps(poses, working, size).argmin())
+    away = gaps(poses, working, size)
+    if not away.size or away.min() > _DOUBLE:  # a double root, which rounding lost among the others
+        return np.concatenate([working[None], poses])
+    nearest = int(away.argmin())
     return np.concatenate([poses[[nearest]], np.delete(poses, nearest, axis=0)])

@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import casadi as ca
 import numpy as np
 
-from kinematics.aspect import in_aspect, nearest_in_aspect
+from kinematics.aspect import in_aspect, joined_to_home
 from kinematics.bodies import Bodies, Particle, Rotor
 from kinematics.continuation import polished
 from kinematics.distinct import gaps, working_first
@@ -42,6 +42,7 @@ _UPPER = (0.0, 0.0, 1.0, 1.0)  # which limbs hold the plate that rides on the sc
 _DEG = math.pi / 180.0
 _E_Z = ca.DM([0, 0, 1])
 _SAME = 1e-6  # rad, or of the robot's size: poses that differ by no more are one
+_APART = 0.25  # of a rod: with plates further apart the roots may change their order
 _OPEN = 1e-12  # rad, or of the robot's size: by what displacement a closed form may miss
 
 
@@ -214,15 +215,26 @@ class Heli4(RotaryLimbs, RodLevel):
         return self._poses_of(joints, w, t)
 
     def working_forward(self, joints: Array) -> Array:
-        """(..., 4) -> (..., 4): the pose of home's aspect, mostly on home's sheet."""
+        """(..., 4) -> (..., 4): the pose of home's assembly mode: on its sheet, where that is sure."""
         joints = self._joints(joints)
         flat = joints.reshape(-1, 4)
         poses = self._on_sheet(flat, self._sheet) if self._sheet else np.full(flat.shape, np.nan)
-        kept = in_aspect(self, poses, flat) & ~self._open(poses, flat) & (self._sheet != 0)
-        if not kept.all():
-            rows, found = self._candidates(flat[~kept])
-            poses[~kept] = nearest_in_aspect(self, rows, found, flat[~kept])
+        doubtful = np.flatnonzero(~self._surely_at_home(poses, flat))
+        if doubtful.size:
+            rows, found = self._candidates(flat[doubtful])
+            poses[doubtful] = joined_to_home(self, rows, found, flat[doubtful])
         return poses.reshape(joints.shape)
+
+    def _surely_at_home(self, poses: Array, joints: Array) -> Array:
+        """(k,) whether both pairs of limbs hang (or stand) clearly, as at home.
+
+        Where not, beyond a singularity the outermost root may belong to another assembly mode.
+        """
+        together = np.abs(self.geometry.pitch / TURN * poses[:, 3]) <= _APART * self.geometry.rod_length
+        (above,) = evaluate(self.program(_above_elbows), poses, joints)
+        clearly = (self._sheet * above < 0.0).all(axis=-1)
+        sure: Array = together & clearly & in_aspect(self, poses, joints) & ~self._open(poses, joints)
+        return sure
 
     def _candidates(self, joints: Array) -> tuple[Array, Array]:
         """(k, 4) joints -> rows (j,) and poses (j, 4), every real one, in the order of w."""
@@ -256,6 +268,14 @@ def _plates(model: Model) -> Plates:
     """From s_i = B_i - A_i with both plates at the origin; (18) with h_i minus the actuator's own height."""
     spheres = Heli4.platform_points(ca.SX(4, 1), model.g) - Heli4.limbs(model.g).elbows(model.joints)
     return plates(spheres, model.g.rod_length)
+
+
+def _above_elbows(robot: Heli4, model: Model) -> Build:
+    """(2,) how high each pair of limbs holds its plate above the middle between its elbows, both moved to the plate."""
+    to_elbow = robot.limbs(model.g).elbows(model.joints) - robot.platform_points(model.pose, model.g)
+    return [model.pose, model.joints], [
+        -ca.vertcat(to_elbow[2, 0] + to_elbow[2, 1], to_elbow[2, 2] + to_elbow[2, 3]) / 2
+    ]
 
 
 def _quartic(_: Heli4, model: Model) -> Build:

@@ -15,11 +15,11 @@ from types import SimpleNamespace
 import casadi as ca
 import numpy as np
 
-from kinematics.aspect import nearest_in_aspect
+from kinematics.aspect import joined_to_home
 from kinematics.bodies import Bodies, Particle, Rotor
 from kinematics.continuation import polished
 from kinematics.distinct import distinct, working_first
-from kinematics.geometry import angle, length, ratio
+from kinematics.geometry import TURN, angle, length, ratio
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.linear import determinant
@@ -174,18 +174,15 @@ class Par4(RotaryLimbs):
         return rows, np.column_stack([halves.mean(axis=1) * g.rod_length, g.amplification * np.angle(between)])
 
     def working_forward(self, joints: Array) -> Array:
-        """(..., 4) -> (..., 4): the pose of home's aspect, its parallelogram folded as at home if any such one is."""
+        """(..., 4) -> (..., 4): the pose of home's assembly mode."""
         joints = self._joints(joints)
         flat = joints.reshape(-1, 4)
         rows, poses = self._candidates(flat, every=False)
         poses = polished(self, poses, flat[rows], 8)
-        folded = np.cos(poses[:, 3] / self.geometry.amplification)  # 0 where it is flat
-        same = folded * math.cos(self.home[3] / self.geometry.amplification) > 0.0
-        closed = np.isfinite(poses).all(axis=1)
-        result = nearest_in_aspect(self, rows[closed & same], poses[closed & same], flat)
-        left = closed & np.isnan(result[rows, 0])
-        other = nearest_in_aspect(self, rows[left], poses[left], flat)
-        return np.where(np.isnan(result), other, result).reshape(joints.shape)
+        result = joined_to_home(self, rows, poses, flat)
+        turn = TURN * self.geometry.amplification  # of the bars: the same place
+        result[:, 3] -= turn * np.round(result[:, 3] / turn)
+        return result.reshape(joints.shape)
 
     def assembly_modes(self, joints: Array) -> Array:
         """(4,) -> (k, 4), every isolated real pose with these joints, at most eight; the working one first."""

@@ -13,7 +13,7 @@ from types import SimpleNamespace
 import casadi as ca
 import numpy as np
 
-from kinematics.aspect import nearest_in_aspect
+from kinematics.aspect import joined_to_home
 from kinematics.bodies import Bodies, InertiaRecord, Particle
 from kinematics.distinct import distinct
 from kinematics.geometry import TURN, GeometryRecord, Points, length
@@ -154,14 +154,14 @@ class Planar(Mechanism):
         return x + 1j * y, radii, np.array(self.geometry.platform_points) @ [1, 1j]
 
     def working_forward(self, joints: Array) -> Array:
-        """(..., 3) -> (..., 3): the pose of home's aspect; of several, the nearest to home.
+        """(..., 3) -> (..., 3): the pose of home's assembly mode.
 
-        Far from home several modes may be in its aspect: `near` then says which one is meant.
+        Far from home several modes may be joined to it: the nearest is given, and `near` says which one is meant.
         """
         joints = self._joints(joints)
-        flat = joints.reshape(-1, 3)
+        flat = _bounded(joints).reshape(-1, 3)
         rows, p, theta = placements(*self._problem(flat))
-        return nearest_in_aspect(self, rows, _poses(p, theta), flat).reshape(joints.shape)
+        return joined_to_home(self, rows, _poses(p, theta), flat).reshape(joints.shape)
 
     def assembly_modes(self, joints: Array) -> Array:
         """(3,) -> (k, 3), every isolated real pose with these joints, at most six; the nearest to `home` first."""

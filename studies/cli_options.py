@@ -21,7 +21,7 @@ FormatOption = Annotated[
     list[str] | None,
     typer.Option(
         "--format",
-        help="With --out: csv, ros2, cia402, zaber, xps or pmac; once for each. [default: the study's own, or csv]",
+        help="With --out: csv, ros2, cia402, zaber, xps or pmac; once for each (default: the study's own, or csv)",
     ),
 ]
 ForceOption = Annotated[
@@ -29,5 +29,5 @@ ForceOption = Annotated[
 ]
 SecondsOption = Annotated[
     float | None,
-    typer.Option("--seconds", help="What each stage may take, in place of the study's [budget]."),
+    typer.Option("--seconds", help="What each stage may take, in place of the study's table \\[budget]."),
 ]

@@ -47,7 +47,9 @@ def hardware_tables(mechanism: type[Mechanism]) -> dict[str, Table]:
     """The keys of `[inertia]` and `[ranges]`."""
     masses = {f.name: _key(f, mechanism.Inertia.dimensions, " >= 0") for f in fields(mechanism.Inertia)}
     ranges = {f.name: _key(f, mechanism.Ranges.dimensions) for f in fields(mechanism.Ranges)}
-    joints = Key(f"finite low < high, once or for each of {len(mechanism.joint_names)} joints", joint_unit(mechanism))
+    joints = Key(
+        f"finite low < high, once or for each of {len(mechanism.joint_names)} joints", joint_unit(mechanism), place=True
+    )
     return {
         "inertia": Table({**masses, **table_of(schema_hardware.Inertia).keys}),
         "ranges": Table(ranges | {"joints": joints}),
@@ -63,7 +65,7 @@ def _key(field: Field[Any], dimensions: Mapping[str, str], more: str = "") -> Ke
     shape = np.shape(field.default)  # type: ignore[arg-type]
     dimension = Dimension(dimensions.get(field.name, "none"))
     count = f"{shape[0]} finite numbers" if shape else "a finite number"
-    return Key(_WORDS.get(field.name, f"{count}{more}"), dimension)
+    return Key(_WORDS.get(field.name, f"{count}{more}"), dimension, place=not more)
 
 
 def hardware_faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:

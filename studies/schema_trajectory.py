@@ -26,7 +26,7 @@ class Limits(Model):
     """Of the tool point."""
     position: Annotated[
         Interval | Annotated[tuple[Interval, ...], Field(min_length=1)] | None,
-        Key("low < high, or one such pair a joint (rad, or m)"),
+        Key("low < high, or one such pair a joint (rad, or m)", place=True),
     ] = None
     """Of the joints; the path alone decides whether it is kept."""
     stall_torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None

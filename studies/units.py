@@ -48,12 +48,14 @@ SMALLEST, LARGEST = 1e-15, 1e15  # in SI: beyond these no length, time, mass or 
 class Key:
     """What a key may hold: `expected` in words, and the dimension that decides its suffix.
 
-    Where `choices` are given, the words name them.
+    Where `choices` are given, the words name them. A `place` may be at 0, and so anywhere close to it: what rounding
+    leaves of a 0 is not too small a number there. Nor is it of angles and frames.
     """
 
     expected: str
     dimension: Dimension = Dimension.NONE
     choices: tuple[str, ...] = ()
+    place: bool = False
 
     @property
     def unit(self) -> str:
@@ -130,8 +132,11 @@ class Conversion:
     def _value(self, value: Any, node: Key | Table, suffix: str, path: KeyPath) -> Any:
         if isinstance(node, Key):
             converted = _in_si(value, suffix)
-            if odd := [number for number in _numbers(converted) if not _is_a_size(number)]:
-                found, expected = f"{odd[0]:g} in SI", f"0, or a number of a size from {SMALLEST:g} to {LARGEST:g}"
+            least = 0.0 if node.place or node.dimension in (Dimension.ANGLE, Dimension.FRAME) else SMALLEST
+            odd = [number for number in _numbers(converted) if number and not least <= abs(number) <= LARGEST]
+            if odd:
+                sizes = f"from {SMALLEST:g} to {LARGEST:g}" if least else f"of at most {LARGEST:g}"
+                found, expected = f"{odd[0]:g} in SI", f"0, or a number of a size {sizes}"
                 self.findings.append(Finding(self.spelling[path], found, expected))
             return converted
         if isinstance(value, list):
@@ -198,10 +203,6 @@ def _numbers(value: Any) -> Iterator[float]:
             yield from _numbers(entry)
     elif isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
         yield value
-
-
-def _is_a_size(number: float) -> bool:
-    return number == 0.0 or SMALLEST <= abs(number) <= LARGEST
 
 
 def _in_si(value: Any, suffix: str) -> Any:

@@ -125,7 +125,7 @@ class LimitsExceeded(LinkwrightError):
     def __init__(self, failures: Mapping[str, float], bound: float) -> None:
         self.failures, self.bound = dict(failures), bound
         what = ", ".join(f"{name} at {value:.6g}" for name, value in self.failures.items())
-        super().__init__(f"verification: {what} of its limit; expected at most {bound:.6g}")
+        super().__init__(f"the motion has {what} of its limit; expected at most {bound:.6g}")
 
 
 class SetpointFileError(LinkwrightError):

@@ -156,12 +156,14 @@ class TimedPath:
             return 0.0
         _, *before = self.path.evaluate(np.nextafter(knots[1:-1], 0.0), 3)
         _, *after = self.path.evaluate(knots[1:-1], 3)
-        first, second, third = (np.abs(b - a) for b, a in zip(before, after, strict=True))
         fourth = self.path.steepest((knots[1:] + knots[:-1]) / 2, 4)
-        rounding = _ULPS * np.finfo(float).eps * (length * np.maximum(fourth[:-1], fourth[1:]) + np.abs(after[2]))
-        jumps = (first, second * length, np.maximum(third - rounding, 0.0) * length**2)
-        unit = np.where(np.arange(first.shape[1]) < places(self.path.pose_names), 1.0, length)
-        return float(max((jump * unit).max() for jump in jumps))
+        steeper = [*(np.abs(a) for a in after[1:]), np.maximum(fourth[:-1], fourth[1:])]
+        unit = np.where(np.arange(fourth.shape[1]) < places(self.path.pose_names), 1.0, length)
+        found = 0.0
+        for k, (b, a, slope) in enumerate(zip(before, after, steeper, strict=True)):
+            rounding = _ULPS * np.finfo(float).eps * (length * slope + np.abs(a))
+            found = max(found, float((np.maximum(np.abs(b - a) - rounding, 0.0) * length**k * unit).max()))
+        return found
 
     def _fourth_slack(self, fourth: Array, low: Array, high: Array, away: Array) -> Array:
         """How far the fourth derivative by s may be, between two arc lengths (k,), from what it is in the middle.

@@ -100,7 +100,7 @@ def _finite_in_si(cell: str, suffix: str) -> float:
 def _path(file: FilePath, rows: Sequence[Row], pose_names: tuple[str, ...]) -> RoundedPath:
     if len(rows) < 2:
         line = rows[-1][0] if rows else 1
-        raise WaypointFileError(file, line, "", f"{len(rows)} poses", "at least 2")
+        raise WaypointFileError(file, line, "", f"{len(rows)} pose" if rows else "no poses", "at least 2")
     for number, values, spelled in (rows[0], rows[-1]):
         if values.get(_BLEND):
             raise WaypointFileError(file, number, *spelled[_BLEND], "nothing: the path ends here")

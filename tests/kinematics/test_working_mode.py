@@ -331,3 +331,55 @@ def test_a_delta_at_a_random_double_root_has_a_pose_that_closes(seed: int) -> No
     pose = robot.forward(joints)
     assert np.isfinite(pose).all()
     assert np.abs(np.linalg.norm(elbows - pose, axis=1) - robot.geometry.rod_length).max() < 1e-12
+
+
+@pytest.mark.parametrize("kind", [Heli4, Planar3PRR, Planar3RRR, GoughStewart])
+def test_joints_of_a_singular_pose_have_a_pose(kind: Any) -> None:
+    """Where a line from home first meets det J_x = 0, found by bisection: two poses become one there."""
+    robot, rng, tried = kind(), np.random.default_rng(1), 0
+    for _ in range(400):
+        along = rng.normal(size=len(robot.pose_names)) * robot.pose_units()
+        if tried == 4:
+            break
+        low, high = _first_singularity(robot, along)
+        if high is None:
+            continue
+        tried += 1
+        joints = robot.inverse(robot.home + low * along)
+        found = robot.forward(joints)
+        assert np.isfinite(found).all()
+        assert np.abs(robot.closure_gap(found, joints)).max() < 1e-11
+    assert tried == 4
+
+
+def _first_singularity(robot: Mechanism, along: np.ndarray) -> tuple[float, float | None]:
+    def side(share: np.ndarray) -> np.ndarray:
+        return np.sign(np.linalg.det(robot.jacobians(robot.home + share[..., None] * along)[1]))
+
+    shares = np.linspace(0.0, 1.2, 400)
+    reached = np.isfinite(robot.inverse(robot.home + shares[:, None] * along)).all(axis=-1)
+    shares = shares[: int(np.argmin(np.append(reached, False)))]
+    changes = np.flatnonzero(np.diff(side(shares))) if len(shares) > 1 else np.empty(0, dtype=int)
+    if not len(changes):
+        return 0.0, None
+    low, high = shares[changes[0]], shares[changes[0] + 1]
+    for _ in range(60):
+        middle = (low + high) / 2
+        same = side(np.array(middle)) == side(np.array(low))
+        low, high = (middle, high) if same else (low, middle)
+    return float(low), float(high)
+
+
+def test_beyond_a_singularity_no_other_assembly_mode_is_given_instead() -> None:
+    """From joints that the working mode has, on to such as it has not: a pose, then none, never a far one."""
+    robot, rng = Heli4(), np.random.default_rng(3)
+    ended = 0
+    for _ in range(60):
+        way = rng.normal(size=4) * 1.5
+        line = robot.inverse(robot.home) + np.linspace(0.0, 1.0, 300)[:, None] * way
+        found = robot.forward(line)
+        there = np.isfinite(found).all(axis=-1)
+        steps = np.abs(np.diff(found, axis=0)[there[1:] & there[:-1]])
+        assert steps[:, :3].max() < 0.3
+        ended += int(not there.all())
+    assert ended > 3
