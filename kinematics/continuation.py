@@ -26,15 +26,20 @@ _LONGEST = 0.25
 _CORRECTED = 0.15  # the most that the first step of Newton's method may be, over the step that it corrects
 _CONTRACTS = 0.5  # the most that a step of Newton's method may be, over the one before
 _NEWTON = 8
+_ROUGH = 1e-3  # a step of Newton's method that ends a best fit on the way
 _ROUNDING = 1e-12
+_CLOSED = 1e-11  # by what displacement a closure may be missed, in the same sizes
 _SHORTEST = 1e-6  # share of the way; where a shorter step is needed, a singularity is ahead
 _MOST = 400  # steps of any pose
 _LAST = 0.02  # share of the way within which a way that gets stuck may end on a singularity
 _HALVINGS = 60
 
 
-class _State(NamedTuple):
-    """Of k poses: how far the closure is open (k, m), J_x (k, m, n), J_q's diagonal (k, m), and J_x's determinant."""
+class State(NamedTuple):
+    """Of k poses: how far the closure is open (k, m), J_x (k, m, n), J_q's diagonal (k, m), and J_x's determinant (k,).
+
+    With more joints than freedoms it is the determinant of J_x^T J_x.
+    """
 
     gap: Array
     j_x: Array
@@ -56,7 +61,7 @@ def continued(robot: Mechanism, joints: Array, near: Array) -> Array:
     lead = start.shape[:-1]
     pose, target = start.reshape(-1, start.shape[-1]).copy(), target.reshape(-1, target.shape[-1])
     first = robot.inverse(pose)
-    way = target - first
+    way = np.where(np.isfinite(target), target, np.nan) - first
     turns = [k for k, unit in enumerate(robot.joint_units) if unit == "rad"]
     way[:, turns] -= 2 * np.pi * np.round(way[:, turns] / (2 * np.pi))
     done = _followed(robot, pose, first, way)
@@ -64,16 +69,6 @@ def continued(robot: Mechanism, joints: Array, near: Array) -> Array:
     pose[stuck] = _at_double_root(robot, pose[stuck], first[stuck] + way[stuck])
     pose[done < 1.0 - _LAST] = np.nan
     return pose.reshape(*lead, pose.shape[-1])
-
-
-def continued_where_doubtful(robot: Mechanism, joints: Array, poses: Array, doubtful: Array) -> Array:
-    """Poses (..., n) of a closed form, but continued from home where doubtful (...,) or where it did not find any."""
-    lost = ~np.isfinite(poses).all(axis=-1) & np.isfinite(joints).all(axis=-1)
-    again = doubtful | lost
-    if again.any():
-        poses = poses.copy()
-        poses[again] = continued(robot, joints[again], robot.home)
-    return poses
 
 
 def _followed(robot: Mechanism, pose: Array, first: Array, way: Array) -> Array:
@@ -84,14 +79,14 @@ def _followed(robot: Mechanism, pose: Array, first: Array, way: Array) -> Array:
         if not active.size:
             break
         q, along = first[active], way[active]
-        here = _state(robot, pose[active], q + done[active, None] * along)
+        here = state_at(robot, pose[active], q + done[active, None] * along)
         twist = _solved(here, here.j_q * along)
         rate = _size(robot, twist)
         with np.errstate(divide="ignore"):
             share = np.minimum(np.minimum(step[active], 1.0 - done[active]), _LONGEST / rate)
         reached = np.where(share >= 1.0 - done[active], 1.0, done[active] + share)
         trial = robot.moved(pose[active], share[:, None] * twist)
-        trial, good = _closed(robot, trial, q + reached[:, None] * along, share * rate, here.determinant)
+        trial, good = _closed(robot, trial, q + reached[:, None] * along, share * rate, here.determinant, reached)
         moved = active[good]
         pose[moved], done[moved] = trial[good], reached[good]
         step[active] = np.where(good, 2.0 * share, 0.5 * share)
@@ -106,7 +101,7 @@ def _at_double_root(robot: Mechanism, pose: Array, joints: Array) -> Array:
     """
     before = pose.copy()
     for _ in range(_HALVINGS):
-        state = _state(robot, pose, joints)
+        state = state_at(robot, pose, joints)
         inverse = np.linalg.pinv(np.nan_to_num(state.j_x * robot.pose_units()), rcond=1e-9)
         twist = np.einsum("kij,kj->ki", inverse, np.nan_to_num(state.gap)) * robot.pose_units()
         size = _size(robot, twist)
@@ -116,28 +111,44 @@ def _at_double_root(robot: Mechanism, pose: Array, joints: Array) -> Array:
     return np.where(ends[:, None], pose, np.nan)
 
 
-def _closed(robot: Mechanism, pose: Array, joints: Array, moved: Array, side: Array) -> tuple[Array, Array]:
-    """Poses (k, n) after Newton's method, and where it converged to a pose of the same side of the singularities."""
+def _closed(
+    robot: Mechanism, pose: Array, joints: Array, moved: Array, side: Array, reached: Array
+) -> tuple[Array, Array]:
+    """Poses (k, n) after Newton's method, and where it converged to a pose of the same side of the singularities.
+
+    Joints on the way have a pose only if they are as many as freedoms; else the best fit serves, roughly.
+    """
+    on_the_way = (reached < 1.0) & (joints.shape[1] > pose.shape[1])
+    enough = np.where(on_the_way, _ROUGH, _ROUNDING)
     before = np.maximum(moved * _CORRECTED / _CONTRACTS, 1e3 * _ROUNDING)
     good, rounded = np.ones(len(pose), dtype=bool), np.zeros(len(pose), dtype=bool)
     for _ in range(_NEWTON):
-        state = _state(robot, pose, joints)
+        state = state_at(robot, pose, joints)
         twist = _solved(state, state.gap)
         size = _size(robot, twist)
-        rounded |= size <= _ROUNDING
+        rounded |= size <= enough
         good &= rounded | (size <= _CONTRACTS * before)
         before = size
         pose = robot.moved(pose, np.where(good[:, None], twist, 0.0))
         if (rounded | ~good).all():
             break
-    gap = np.abs(robot.closure_gap(pose, joints)).max(axis=-1)  # with more joints than freedoms it may stay open
-    closes = gap <= 10 * _ROUNDING
-    return pose, good & rounded & closes & (_state(robot, pose, joints).determinant * side > 0.0)
+    closes = on_the_way | (np.abs(robot.closure_gap(pose, joints)).max(axis=-1) <= _CLOSED)
+    return pose, good & rounded & closes & (state_at(robot, pose, joints).determinant * side > 0.0)
 
 
-def _state(robot: Mechanism, pose: Array, joints: Array) -> _State:
+def polished(robot: Mechanism, poses: Array, joints: Array, steps: int) -> Array:
+    """Poses (k, n) near to those with joints (k, m), after Newton's method; NaN where the closure does not close."""
+    for _ in range(steps):
+        state = state_at(robot, poses, joints)
+        poses = robot.moved(poses, np.nan_to_num(_solved(state, state.gap)))
+    closes = np.abs(robot.closure_gap(poses, joints)).max(axis=-1) <= _CLOSED
+    return np.where(closes[:, None], poses, np.nan)
+
+
+def state_at(robot: Mechanism, pose: Array, joints: Array) -> State:
+    """At poses (k, n) with joints (k, m)."""
     gap, j_x, j_q, det = evaluate(robot.program(_build), pose, joints)
-    return _State(gap, j_x, j_q, det[:, 0])
+    return State(gap, j_x, j_q, det[:, 0])
 
 
 def _build(robot: Mechanism, model: Model) -> Build:  # noqa: ARG001
@@ -146,7 +157,7 @@ def _build(robot: Mechanism, model: Model) -> Build:  # noqa: ARG001
     return [model.pose, model.joints], [model.closure, model.j_x, model.j_q, det]
 
 
-def _solved(state: _State, right: Array) -> Array:
+def _solved(state: State, right: Array) -> Array:
     """(k, n) twists t with J_x t = right (k, m), in the sense of least squares; NaN on a singularity."""
     matrix, n = state.j_x, state.j_x.shape[-1]
     if matrix.shape[-2] != n:

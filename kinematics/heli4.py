@@ -14,8 +14,9 @@ from types import SimpleNamespace
 import casadi as ca
 import numpy as np
 
+from kinematics.aspect import in_aspect, joined_to_home
 from kinematics.bodies import Bodies, Particle, Rotor
-from kinematics.continuation import continued, continued_where_doubtful
+from kinematics.continuation import polished
 from kinematics.distinct import gaps, working_first
 from kinematics.geometry import TURN, angle, length, screw_pitch
 from kinematics.heli4_forward import Plates, plates
@@ -42,6 +43,7 @@ _DEG = math.pi / 180.0
 _E_Z = ca.DM([0, 0, 1])
 _SAME = 1e-6  # rad, or of the robot's size: poses that differ by no more are one
 _APART = 0.25  # of a rod: with plates further apart the roots may change their order
+_OPEN = 1e-12  # rad, or of the robot's size: by what displacement a closed form may miss
 
 
 @dataclass(frozen=True)
@@ -213,34 +215,52 @@ class Heli4(RotaryLimbs, RodLevel):
         return self._poses_of(joints, w, t)
 
     def working_forward(self, joints: Array) -> Array:
-        """(..., 4) -> (..., 4): on the sheet of home.
-
-        Where not both pairs of limbs hang (or stand) clearly, beyond a singularity the outermost root may belong to
-        another assembly mode: such poses are continued from home.
-        """
+        """(..., 4) -> (..., 4): the pose of home's assembly mode: on its sheet, where that is sure."""
         joints = self._joints(joints)
-        if not self._sheet:
-            return continued(self, joints, self.home)
-        poses = self._on_sheet(joints, self._sheet)
-        apart = np.abs(self.geometry.pitch / TURN * poses[..., 3]) > _APART * self.geometry.rod_length
+        flat = joints.reshape(-1, 4)
+        poses = self._on_sheet(flat, self._sheet) if self._sheet else np.full(flat.shape, np.nan)
+        doubtful = np.flatnonzero(~self._surely_at_home(poses, flat))
+        if doubtful.size:
+            rows, found = self._candidates(flat[doubtful])
+            poses[doubtful] = joined_to_home(self, rows, found, flat[doubtful])
+        return poses.reshape(joints.shape)
+
+    def _surely_at_home(self, poses: Array, joints: Array) -> Array:
+        """(k,) whether both pairs of limbs hang (or stand) clearly, as at home.
+
+        Where not, beyond a singularity the outermost root may belong to another assembly mode.
+        """
+        together = np.abs(self.geometry.pitch / TURN * poses[:, 3]) <= _APART * self.geometry.rod_length
         (above,) = evaluate(self.program(_above_elbows), poses, joints)
-        doubtful = apart | (self._sheet * above >= 0.0).any(axis=-1)
-        return continued_where_doubtful(self, joints, poses, doubtful)
+        clearly = (self._sheet * above < 0.0).all(axis=-1)
+        sure: Array = together & clearly & in_aspect(self, poses, joints) & ~self._open(poses, joints)
+        return sure
+
+    def _candidates(self, joints: Array) -> tuple[Array, Array]:
+        """(k, 4) joints -> rows (j,) and poses (j, 4), every real one, in the order of w."""
+        in_w, in_t, kappa = evaluate(self.program(_quartics), joints)
+        # w t = kappa: each unknown serves where it is the larger one, up to a factor that no symmetry makes a tie.
+        least, tie = np.sqrt(np.abs(kappa)), 0.9
+        w, t = real_roots(in_w), real_roots(in_t)
+        by_w = np.nonzero((np.abs(w) >= tie * least) & (w != 0.0))
+        by_t = np.nonzero((np.abs(t) >= least / tie) & (t != 0.0))
+        rows = np.concatenate([by_w[0], by_t[0]])
+        w, t = w[by_w], t[by_t]
+        found = np.concatenate([w, kappa[by_t[0], 0] / t]), np.concatenate([kappa[by_w[0], 0] / w, t])
+        order = np.lexsort((found[0], rows))
+        rows, poses = rows[order], self._poses_of(joints[rows[order]], found[0][order], found[1][order])
+        exact = polished(self, poses, joints[rows], 3)
+        lost = self._open(poses, joints[rows]) & np.isfinite(exact).all(axis=1)  # else on a singularity
+        return rows, np.where(lost[:, None], exact, poses)
+
+    def _open(self, poses: Array, joints: Array) -> Array:
+        """(k,) whether a closed form lost digits on the way."""
+        return np.abs(self.closure_gap(poses, joints)).max(axis=-1) > _OPEN
 
     def assembly_modes(self, joints: Array) -> Array:
         """(4,) -> (k, 4), every real pose with these joints, at most four; the working one first."""
-
         joints = self._one(joints)
-        in_w, in_t, (kappa,) = evaluate(self.program(_quartics), joints)
-        # w t = kappa: each unknown serves where it is the larger one, up to a factor that no symmetry makes a tie.
-        least, tie = np.sqrt(np.abs(kappa)), 0.9
-        w, t = (
-            roots[(np.abs(roots) >= part * least) & (roots != 0.0)]
-            for roots, part in ((real_roots(in_w), tie), (real_roots(in_t), 1 / tie))
-        )
-        found = np.concatenate([np.stack([w, kappa / w]), np.stack([kappa / t, t])], axis=1)
-        w, t = found[:, np.argsort(found[0])]
-        poses = self._poses_of(np.broadcast_to(joints, (w.size, 4)), w, t)
+        _, poses = self._candidates(joints[None])
         return working_first(poses, self.forward(joints), self.geometry.size)
 
 

@@ -154,6 +154,15 @@ class Mechanism(Definition):
         units[list(self.rotations)] = 1.0
         return units
 
+    def apart(self, first: Array, second: Array) -> Array:
+        """(..., n), (..., n) -> (...,) the largest difference of poses: an angle, or a length over the robot's size."""
+        gap = self._poses(first) - self._poses(second)
+        turns = list(self.rotations)
+        if not self.counts_turns:
+            gap[..., turns] = 2 * np.sin(gap[..., turns] / 2)
+        largest: Array = np.abs(gap / self.pose_units()).max(axis=-1)
+        return largest
+
     def jacobians(self, pose: Array, joints: Array | None = None) -> tuple[Array, Array]:
         """J_q (..., m, m) and J_x (..., m, n), with J_q q' = J_x t; working mode, unless `joints` (..., m) say."""
         if joints is None:

@@ -10,15 +10,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
 
+from kinematics.aspect import joined_to_home
 from kinematics.bodies import Bodies, Particle, Rotor
-from kinematics.continuation import continued, continued_where_doubtful
-from kinematics.distinct import distinct, gaps, working_first
+from kinematics.continuation import polished
+from kinematics.distinct import distinct, working_first
 from kinematics.geometry import TURN, angle, length, ratio
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
@@ -40,7 +40,6 @@ from kinematics.rotary_limbs import (
 from kinematics.twins import HalvesGeometry
 
 _DEG = math.pi / 180.0
-_SAME = 1e-6  # rad, or of the robot's size: poses that differ by no more are one
 _HALF = (-1.0, -1.0, 1.0, 1.0)  # which end of the bars each limb holds
 
 
@@ -174,69 +173,22 @@ class Par4(RotaryLimbs):
         between = (halves[:, 1, :2] - halves[:, 0, :2]) @ [1, 1j] * np.exp(-1j * g.bar_angle)
         return rows, np.column_stack([halves.mean(axis=1) * g.rod_length, g.amplification * np.angle(between)])
 
-    def _polished(self, poses: Array, joints: Array, steps: int) -> Array:
-        """Newton's method on the closure; (k, 4), NaN where it does not close."""
-        program = self.program(_closure_and_j_x)
-        size = self.geometry.rod_length**2
-        for _ in range(steps):
-            error, j_x = evaluate(program, poses, joints)
-            regular = np.abs(self._regularity(poses, joints)) > 1e-14
-            safe = np.where(regular[:, None, None], j_x, np.eye(4))
-            step = np.linalg.solve(safe, np.nan_to_num(error)[..., None])[..., 0]
-            poses = poses + np.where(regular[:, None], step, 0.0)
-        error = np.abs(evaluate(program, poses, joints)[0]).max(axis=1)
-        return np.where((error <= 1e-14 * size)[:, None], poses, np.nan)
-
-    @cached_property
-    def _side(self) -> int:
-        """Where home is among the poses of its joints: 1 the lowest, -1 the highest, 0 in between."""
-        joints = self.inverse(self.home)
-        if np.isfinite(joints).all():
-            for side in (1, -1):
-                if gaps(self._outermost(joints, side), self.home, self.geometry.size) <= _SAME:
-                    return side
-            return 0
-        return 1
-
-    def _outermost(self, joints: Array, side: int) -> Array:
-        """(..., 4) -> (..., 4): the lowest (1) or highest (-1) of the modes."""
-        flat = joints.reshape(-1, 4)
-        result = np.full(flat.shape, np.nan)
-        rows, poses = self._candidates(flat, every=False)
-        order = np.lexsort((side * poses[:, 2], rows))
-        rows, poses = rows[order], poses[order]
-        while rows.size:  # once, unless the first candidate proves wrong
-            first = np.flatnonzero(np.diff(rows, prepend=-1))
-            here = rows[first]
-            result[here] = self._polished(poses[first], flat[here], 4)
-            left = np.isnan(result[rows, 0])
-            left[first] = False
-            rows, poses = rows[left], poses[left]
-        return result.reshape(joints.shape)
-
     def working_forward(self, joints: Array) -> Array:
-        """(..., 4) -> (..., 4): the lowest mode or the highest, as home is; else continued from home.
-
-        Where not both halves hang (or stand) clearly, beyond a singularity the outermost mode may be another one than
-        home's: such poses are continued from home.
-        """
+        """(..., 4) -> (..., 4): the pose of home's assembly mode."""
         joints = self._joints(joints)
-        if self._side:
-            poses = self._outermost(joints, self._side)
-            (above,) = evaluate(self.program(_above_elbows), poses, joints)
-            doubtful = np.asarray((self._side * above >= 0.0).any(axis=-1))
-            poses = continued_where_doubtful(self, joints, poses, doubtful)
-        else:
-            poses = continued(self, joints, self.home)
+        flat = joints.reshape(-1, 4)
+        rows, poses = self._candidates(flat, every=False)
+        poses = polished(self, poses, flat[rows], 8)
+        result = joined_to_home(self, rows, poses, flat)
         turn = TURN * self.geometry.amplification  # of the bars: the same place
-        poses[..., 3] -= turn * np.round(poses[..., 3] / turn)
-        return poses
+        result[:, 3] -= turn * np.round(result[:, 3] / turn)
+        return result.reshape(joints.shape)
 
     def assembly_modes(self, joints: Array) -> Array:
         """(4,) -> (k, 4), every isolated real pose with these joints, at most eight; the working one first."""
         joints = self._one(joints)
         _, poses = self._candidates(joints[None], every=True)
-        poses = self._polished(poses, np.broadcast_to(joints, poses.shape), 20)
+        poses = polished(self, poses, np.broadcast_to(joints, poses.shape), 20)
         poses = poses[np.isfinite(poses).all(axis=1)]
         poses = poses[np.argsort(poses[:, 2], kind="stable")]
         turn = np.exp(1j * poses[:, 3] / self.geometry.amplification)
@@ -254,18 +206,6 @@ def _spheres(robot: Par4, model: Model) -> Build:
     g = model.g
     centres = robot.limbs(g).elbows(model.joints) - robot.platform_points(ca.SX(4, 1), g)
     return [model.joints], [(centres + robot.half_bar(ca.SX(0), g) @ ca.DM(_HALF).T).T]
-
-
-def _above_elbows(robot: Par4, model: Model) -> Build:
-    """(2,) how high each half is above the middle between its elbows."""
-    to_elbow = robot.limbs(model.g).elbows(model.joints) - robot.platform_points(model.pose, model.g)
-    return [model.pose, model.joints], [
-        -ca.vertcat(to_elbow[2, 0] + to_elbow[2, 1], to_elbow[2, 2] + to_elbow[2, 3]) / 2
-    ]
-
-
-def _closure_and_j_x(_: Par4, model: Model) -> Build:
-    return [model.pose, model.joints], [model.closure, model.j_x]
 
 
 def _regularity(robot: Par4, model: Model) -> Build:

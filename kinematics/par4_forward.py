@@ -23,7 +23,7 @@ from kinematics.polynomial_product import product
 
 Array = np.ndarray
 
-_CANDIDATE = 1e-5  # error of the bar's squared length at which a candidate is worth a closer look
+_CANDIDATE = 1e-3  # error of the bar's squared length at which a candidate is worth a closer look: near a double root
 
 
 class Halves(NamedTuple):

@@ -12,6 +12,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from types import SimpleNamespace
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -140,6 +141,11 @@ class Peppermill(Mechanism):
         if math.isnan(first + second):
             return limbs.SIDES[0]
         return (1 if first > 0.0 else -1, 1 if second > 0.0 else -1)
+
+    def conditions(self) -> dict[str, Any]:
+        """The sides too where they are not the usual ones: the distal links' ends rest as they point at home."""
+        sides = {} if self.sides == limbs.SIDES[0] else {"sides": self.sides}
+        return super().conditions() | sides
 
     # The closure and its closed forms.
 

@@ -13,8 +13,8 @@ from types import SimpleNamespace
 import casadi as ca
 import numpy as np
 
+from kinematics.aspect import joined_to_home
 from kinematics.bodies import Bodies, InertiaRecord, Particle
-from kinematics.continuation import continued_where_doubtful
 from kinematics.distinct import distinct
 from kinematics.geometry import TURN, GeometryRecord, Points, length
 from kinematics.interpreter import evaluate
@@ -154,30 +154,14 @@ class Planar(Mechanism):
         return x + 1j * y, radii, np.array(self.geometry.platform_points) @ [1, 1j]
 
     def working_forward(self, joints: Array) -> Array:
-        """(..., 3) -> (..., 3): of the modes on home's side of the parallel singularities the one nearest to home.
+        """(..., 3) -> (..., 3): the pose of home's assembly mode.
 
-        Its side is that of the same sign of det J_x; any, where home itself is singular or out of reach. Far from home
-        several modes may be on its side: `near` then says which one is meant.
+        Far from home several modes may be joined to it: the nearest is given, and `near` says which one is meant.
         """
-        joints, wanted = self._joints(joints), self.home
-        centres, radii, points = self._problem(joints.reshape(-1, 3))
-        rows, p, theta = placements(centres, radii, points)
-        side = np.nan_to_num(self._side(wanted[None, 0] + 1j * wanted[1], wanted[2:], self.inverse(wanted[None])))
-        away = np.abs(p - wanted[0] - 1j * wanted[1]) / self.characteristic_length
-        away += np.abs(np.exp(1j * theta) - np.exp(1j * wanted[2]))
-        away[side * np.sign(rods_and_determinant(p, theta, centres[rows], points)[2]) < 0.0] = np.inf
-        order = np.lexsort((away, rows))
-        order = order[np.isfinite(away[order])]
-        rows, first = np.unique(rows[order], return_index=True)
-        result = np.full((len(centres), 3), np.nan)
-        result[rows] = _poses(p, theta)[order[first]]
-        none = np.zeros(joints.shape[:-1], dtype=bool)
-        return continued_where_doubtful(self, _bounded(joints), result.reshape(joints.shape), none)
-
-    def _side(self, p: Array, theta: Array, joints: Array) -> Array:
-        """(k,) sign of det J_x, up to a sign that is the same everywhere."""
-        centres, _, points = self._problem(joints)
-        return np.sign(rods_and_determinant(p, theta, centres, points)[2])
+        joints = self._joints(joints)
+        flat = _bounded(joints).reshape(-1, 3)
+        rows, p, theta = placements(*self._problem(flat))
+        return joined_to_home(self, rows, _poses(p, theta), flat).reshape(joints.shape)
 
     def assembly_modes(self, joints: Array) -> Array:
         """(3,) -> (k, 3), every isolated real pose with these joints, at most six; the nearest to `home` first."""

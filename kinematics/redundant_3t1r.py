@@ -18,7 +18,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from kinematics.bodies import Bodies, Particle, Rod, Rotor
-from kinematics.continuation import continued
+from kinematics.continuation import polished
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array
@@ -223,11 +223,13 @@ class Redundant3T1R(RodLevel):
     def working_forward(self, joints: Array) -> Array:
         """(..., 6) -> (..., 4), the candidate of (20) with every slide behind its platform point, (21), or ahead.
 
-        With slides on both sides two candidates may meet, and rounding would part them: continued from home.
+        With slides on both sides two candidates may meet, where each loses half its digits: Newton gives them back.
         """
-        if len(set(self.mode.branches)) > 1:
-            return continued(self, self._joints(joints), self.home)
-        return self._chosen(self._joints(joints), _CLOSES * self.geometry.size)
+        joints = self._joints(joints)
+        poses = self._chosen(joints, _CLOSES * self.geometry.size)
+        if len(set(self.mode.branches)) == 1:
+            return poses
+        return polished(self, poses.reshape(-1, 4), joints.reshape(-1, _LIMBS), 4).reshape(poses.shape)
 
     def paper_forward(self, joints: Array) -> Array:
         """(..., 6) -> (..., 4) what the paper's model gives, which never looks at x_6, to joints of no pose too.

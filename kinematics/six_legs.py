@@ -74,6 +74,13 @@ class SixLegs(Mechanism):
         turned = turn(twist[:, 3:]) @ rotation(pose[:, 3:])
         return np.concatenate([pose[:, :3] + twist[:, :3], angles(turned)], axis=1)
 
+    def apart(self, first: Array, second: Array) -> Array:
+        """As everywhere here; the angle by the chord between the orientations."""
+        first, second = self._poses(first), self._poses(second)
+        chord = np.linalg.norm(rotation(first[..., 3:]) - rotation(second[..., 3:]), axis=(-2, -1)) / np.sqrt(2)
+        shift = np.abs(first[..., :3] - second[..., :3]).max(axis=-1) / self.geometry.size
+        return np.maximum(chord, shift)
+
     def working_forward(self, joints: Array) -> Array:
         """(..., 6) -> (..., 6): continued from home."""
         return continued(self, self._joints(joints), self.home)

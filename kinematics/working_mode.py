@@ -88,9 +88,18 @@ def _apart(robot: Mechanism, found: Array, wanted: Array) -> Array:
 
 
 def _quarter(angle: float, low: float, high: float) -> int:
-    """The quarter turn nearest to the angle, counted in the turn around the middle of its range (or a quarter turn)."""
-    middle = (low + high) / 2 if math.isfinite(low) and math.isfinite(high) else _QUARTER
+    """The quarter turn nearest to the angle, counted in the turn around the middle of its range (or a quarter turn).
+
+    Where the angle is within its range, so that the range is in use: the nearest whose cut lies outside the range.
+    """
+    bounded = math.isfinite(low) and math.isfinite(high)
+    middle = (low + high) / 2 if bounded else _QUARTER
     if math.isnan(angle):
         angle = middle
     angle -= 2 * math.pi * round((angle - middle) / (2 * math.pi))
-    return math.floor(angle / _QUARTER + 0.5)
+    nearest = math.floor(angle / _QUARTER + 0.5)
+    if bounded and low <= angle <= high:
+        first, last = math.floor((high - math.pi) / _QUARTER) + 1, math.ceil((low + math.pi) / _QUARTER) - 1
+        if first <= last:
+            return min(max(nearest, first), last)
+    return nearest

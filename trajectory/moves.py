@@ -29,6 +29,8 @@ _ROUNDING = 1e-9  # of a limit: ruckig's profiles touch the limits
 _SAME_JOINTS = 1e-7  # rad, or of the robot's size: how far joints may be from those of their own pose
 _GRID = 201  # poses of a line, from which its first limits come
 _ROUNDS = 30  # of slowing a line of the pose down
+_POWERS = {"speed": 1, "acceleration": 2, "jerk": 3, "torque": 2, "torque at speed": 2}  # of the pace, each rises with
+_SWING = 1.5  # rad
 _SLOWER = 1.01  # at least, in each round
 
 
@@ -86,7 +88,7 @@ def plan_move(
         LimitsExceeded: a limit is broken on the way.
     """
     _require_usable(limits, period)
-    ends = np.stack([np.asarray(start, dtype=float), np.asarray(target, dtype=float)])
+    ends = np.stack([checked(v, name, robot.pose_names) for v, name in ((start, "start"), (target, "target"))])
     robot.require_reachable(ends)
     joints = to_actuators(robot, robot.inverse(ends))
     asked = {"start": ends[0].tolist(), "target": ends[1].tolist()}
@@ -96,6 +98,7 @@ def plan_move(
             profile = fastest_move(joints[0], joints[1], _axis_limits(limits, joints.shape[1]), period, PARTS, wanted)
             way = _of_joints(robot, profile, ends[0], payload)
             _require_in_ranges(robot, way, limits)
+            _require_at(robot, way, ends[1])
         except MoveRefused:
             pass
         else:
@@ -169,8 +172,7 @@ def _of_joints(robot: Mechanism, profile: Profile, near: Array, payload: float) 
         MoveRefused: a pose on the way does not exist, or belongs to another working mode.
     """
     joints = from_actuators(robot, profile.position)
-    first = robot.forward(joints[0], near=near)
-    pose = robot.forward(joints, near=first)
+    pose = _followed(robot, joints, near)
     missing = ~np.isfinite(pose).all(axis=-1)
     if missing.any():
         k = int(np.argmax(missing))
@@ -192,13 +194,27 @@ def _of_joints(robot: Mechanism, profile: Profile, near: Array, payload: float) 
     return _Way(profile.times, pose, profile.position, profile.speed, profile.acceleration, torque)
 
 
+def _followed(robot: Mechanism, joints: Array, near: Array) -> Array:
+    """(k, n) poses of joints (k, m), from one near the first on: each found from one less than half a turn away."""
+    turns = [unit == "rad" for unit in robot.joint_units]
+    first = robot.forward(joints[0], near=near)
+    parts = (np.abs(joints - joints[0])[:, turns].max(axis=1, initial=0.0) // _SWING).astype(int)
+    pose, last = np.empty((len(joints), len(robot.pose_names))), first
+    for part in range(parts.max() + 1):
+        rows = np.flatnonzero(parts == part)
+        if rows.size:
+            pose[rows] = robot.forward(joints[rows], near=last)
+            last = pose[rows[-1]]
+    return pose
+
+
 def _of_pose(
     robot: Mechanism, ends: Array, limits: Limits, payload: float, period: float, wanted: dict[str, Any]
 ) -> _Way:
     """The fastest move on the straight line between two poses (2, n): planned along it, and slowed until it fits.
 
     Raises:
-        MoveRefused: the line leaves a range or the reach.
+        MoveRefused: the line leaves a range or the reach, or passes a singularity.
         LimitsExceeded: it does not fit however slow.
     """
     along, count = ends[1] - ends[0], len(robot.joint_names)
@@ -208,6 +224,7 @@ def _of_pose(
     lost = ~np.isfinite(rate).all(axis=-1)
     if lost.any():
         raise MoveRefused("a limb out of reach", math.nan, grid[int(np.argmax(lost))].tolist())
+    _require_regular(robot, grid)
     full = [np.array(limit) for limit in _axis_limits(limits, count)]
     with np.errstate(divide="ignore"):
         of_line = [float(np.min(limit / rate.max(axis=0), initial=1e12)) for limit in full]
@@ -224,9 +241,36 @@ def _of_pose(
         found = _peaks(way, limits)
         if max(found.values()) <= 1.0 + _ROUNDING:
             return way
-        powers = {"speed": 1, "acceleration": 2, "jerk": 3}
-        slower *= max(_SLOWER, *(found[name] ** (1 / power) for name, power in powers.items()))
+        slower *= max(_SLOWER, *(ratio ** (1 / _POWERS[name]) for name, ratio in found.items()))
     raise LimitsExceeded({name: value for name, value in found.items() if value > 1.0}, 1.0)
+
+
+def _require_regular(robot: Mechanism, line: Array) -> None:
+    """Check that a line of poses (k, n) keeps to one side of the parallel singularities.
+
+    With more joints than freedoms no line separates two sides, and none is looked for.
+
+    Raises:
+        MoveRefused: naming the pose.
+    """
+    j_x = robot.jacobians(line)[1]
+    if j_x.shape[-2] != j_x.shape[-1]:
+        return
+    sides = np.sign(np.linalg.det(j_x))
+    across = (sides != sides[0]) | (sides == 0.0)
+    if across.any():
+        raise MoveRefused("a singularity", math.nan, line[int(np.argmax(across))].tolist())
+
+
+def _require_at(robot: Mechanism, way: _Way, target: Array) -> None:
+    """Check that a way ends at its target: in another assembly mode the same joints belong to another pose.
+
+    Raises:
+        MoveRefused: it ends elsewhere.
+    """
+    gap = float(robot.apart(way.pose[-1], target))
+    if not gap <= _SAME_JOINTS:
+        raise MoveRefused("another assembly mode than the target's", float(way.times[-1]), way.pose[-1].tolist())
 
 
 def _require_in_ranges(robot: Mechanism, way: _Way, limits: Limits) -> None:

@@ -151,3 +151,13 @@ def test_robots_of_other_ranges_or_working_modes_are_told_apart_by_their_conditi
     assert Heli4().conditions_digest != Heli4(home=[0.0, 0.0, 0.7, 0.0]).conditions_digest
     legs = GoughStewart(home=[0.0, 0.0, 0.61, 0.0, 0.0, 0.0])
     assert GoughStewart().conditions_digest != legs.conditions_digest  # whose joints rest at home
+
+
+def test_a_peppermill_whose_links_point_elsewhere_is_told_apart() -> None:
+    """The same elbows and cuts, but at this home both distal links point up, where their ends then rest."""
+    usual = Peppermill()
+    other = Peppermill(home=[-0.3328, 0.2661, 0.2297, -10.4252])
+    assert other.mode == usual.mode
+    assert other.sides != usual.sides
+    assert other.margin("passive_joint", other.home) != pytest.approx(usual.margin("passive_joint", other.home))
+    assert other.conditions_digest != usual.conditions_digest

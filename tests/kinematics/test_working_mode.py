@@ -202,6 +202,29 @@ def test_angles_are_counted_in_the_turn_around_the_middle_of_their_range() -> No
     assert np.abs(turned.forward(turned.inverse(pose)) - pose).max() < 1e-12
 
 
+@pytest.mark.parametrize(
+    ("arms", "home"), [((0.0, 3.8), 0.3), ((0.0, 3.8), 3.3), ((-1.2, 1.8), -0.9), ((2.6, 7.0), 2.7)]
+)
+def test_the_cut_of_an_angle_lies_outside_a_range_that_holds_home(arms: tuple[float, float], home: float) -> None:
+    """A planar arm at any angle of its range, with home at one end: no turn is lost or added on the way."""
+    usual = Planar3RRR.Geometry()
+    base, platform = np.array(usual.base_points), np.array(usual.platform_points)
+    angles = np.linspace(arms[0], arms[1], 50)[1:-1]
+    elbow = base[0] + usual.arm_lengths[0] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    reached = elbow + usual.rod_lengths[0] * np.stack([np.cos(angles + 1.0), np.sin(angles + 1.0)], axis=1)
+    geometry = usual.with_values(
+        zero_angles=(0.0, *usual.zero_angles[1:]), arm_lengths=(0.3, 2.0, 2.0), rod_lengths=(0.35, 2.0, 2.0)
+    )
+    poses = np.column_stack([reached - platform[0], np.zeros(len(angles))])
+    ranges = Planar3RRR.Ranges(joints=(arms, (-20.0, 20.0), (-20.0, 20.0)))
+    at_home = poses[int(np.abs(angles - home).argmin())]
+    robot = Planar3RRR(geometry, home=at_home, ranges=ranges)
+    side = np.sign(robot.inverse(poses)[:, 0] - angles).any()
+    if side:  # the elbow is on the other side: choose it
+        robot = Planar3RRR(geometry, home=at_home, ranges=ranges, home_joints=[home, *robot.inverse(at_home)[1:]])
+    assert robot.inverse(poses)[:, 0] == pytest.approx(angles, abs=1e-9)
+
+
 @EACH
 def test_the_default_home_is_within_reach_at_any_size(kind: Any) -> None:
     for size in (1e-3, 1.0, 1e3):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from ruckig import Result
 
-from kinematics import Delta, Heli4, InvalidValue, Redundant3T1R, UnreachablePose
+from kinematics import Delta, GoughStewart, Heli4, InvalidShape, InvalidValue, Redundant3T1R, UnreachablePose
 from kinematics.motion import actuator_motion
 from trajectory import (
     AdeptCycle,
@@ -155,6 +155,31 @@ def test_a_redundant_robot_moves_on_a_line_of_its_pose_with_all_joints_within_th
     for values, most in ((points.speed, 1.0), (points.acceleration, 8.0)):
         assert np.abs(values).max() <= most * (1 + 1e-9)
     assert max(np.abs(points.speed).max() / 1.0, np.abs(points.acceleration).max() / 8.0) > 0.8
+
+
+def test_a_target_in_another_assembly_mode_is_refused_though_the_joints_are_the_same() -> None:
+    """A hexapod above and below its base has the same legs; every way between them passes a singularity."""
+    robot, limits = GoughStewart(), Limits(speed=1.0, acceleration=10.0, jerk=1e3)
+    start = np.array([0.02, 0.01, 0.6, 0.1, 0.0, 0.0])
+    target = start * [1, 1, -1, -1, -1, 1]
+    assert np.abs(robot.inverse(start) - robot.inverse(target)).max() < 1e-12
+    with pytest.raises(MoveRefused, match="a singularity"):
+        plan_move(robot, start, target, limits, 1.0, 1e-3, robot.actuator_units)
+
+
+def test_a_redundant_robot_slows_down_until_its_torque_suffices() -> None:
+    robot, limits = Redundant3T1R(), Limits(speed=2.0, acceleration=30.0, jerk=3e3)
+    start, end = np.array([-0.2, -0.1, 0.05, -0.4]), np.array([0.3, 0.2, -0.1, 0.6])
+    free = plan_move(robot, start, end, limits, 1.0, 1e-3, robot.actuator_units)
+    most = np.abs(free.setpoints.torque).max()
+    held = plan_move(robot, start, end, replace(limits, torque=0.6 * most), 1.0, 1e-3, robot.actuator_units)
+    assert np.abs(held.setpoints.torque).max() <= 0.6 * most * (1 + 1e-9)
+    assert free.duration < held.duration < 2.0 * free.duration
+
+
+def test_a_start_of_another_kind_of_pose_is_named() -> None:
+    with pytest.raises(InvalidShape, match="start"):
+        plan_move(Delta(), HOME, np.zeros(3), LIMITS, 1.0, 1e-3, ("rad",) * 3)
 
 
 def test_a_move_that_leaves_the_joints_ranges_is_refused_by_margin_time_and_pose() -> None:
