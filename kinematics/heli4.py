@@ -41,6 +41,7 @@ _UPPER = (0.0, 0.0, 1.0, 1.0)  # which limbs hold the plate that rides on the sc
 _DEG = math.pi / 180.0
 _E_Z = ca.DM([0, 0, 1])
 _SAME = 1e-6  # rad, or of the robot's size: poses that differ by no more are one
+_APART = 0.25  # of a rod: with plates further apart the roots may change their order
 
 
 @dataclass(frozen=True)
@@ -221,8 +222,9 @@ class Heli4(RotaryLimbs, RodLevel):
         if not self._sheet:
             return continued(self, joints, self.home)
         poses = self._on_sheet(joints, self._sheet)
+        apart = np.abs(self.geometry.pitch / TURN * poses[..., 3]) > _APART * self.geometry.rod_length
         (above,) = evaluate(self.program(_above_elbows), poses, joints)
-        doubtful = np.asarray((self._sheet * above >= 0.0).any(axis=-1))
+        doubtful = apart | (self._sheet * above >= 0.0).any(axis=-1)
         return continued_where_doubtful(self, joints, poses, doubtful)
 
     def assembly_modes(self, joints: Array) -> Array:

@@ -34,7 +34,12 @@ class Angle(NamedTuple):
         """(..., 1) the angle and its derivatives by s, order + 1 of them."""
         span, w = self._within(s)
         extent, change = np.diff(self.at)[span], np.diff(self.values)[span]
-        shares = [share[..., 0] for share in evaluate(septic_program(), w[..., None], 1 / extent[..., None])]
+        # By S7(w) = 1 - S7(1 - w), from the nearer end: there its derivatives vanish without cancellation.
+        left = w <= 0.5
+        nearer = np.where(left, w, np.clip((self.at[span + 1] - s) / extent, 0.0, 1.0))
+        shares = [share[..., 0] for share in evaluate(septic_program(), nearer[..., None], 1 / extent[..., None])]
+        shares = [share if k % 2 else np.where(left, share, -share) for k, share in enumerate(shares)]
+        shares[0] = np.where(left, shares[0], 1.0 + shares[0])
         evenly = [w, 1 / extent, *[np.zeros_like(w)] * (len(shares) - 2)]
         found = [change * np.where(self.even[span], e, share) for e, share in zip(evenly, shares, strict=True)]
         found[0] = self.values[span] + found[0]

@@ -29,7 +29,7 @@ from trajectory.toppra_law import time_optimal
 _AT = (0.0, 0.5)  # where in an interval speed, acceleration, torque are kept
 _ARCH_AT = 480  # instants, about, at which the tool stays outside the arch: a tenth of a blend apart at most
 _PROOF = 100_000  # parts of the motion, over each of which the arch is proved to be kept
-_SLOWER = 1.15  # the guess, over the time-optimal law
+_SLOWER = (1.1, 1.15, 1.3)  # durations of the guess over the time-optimal law, until one leads to an answer
 _ROOM = 0.25  # of the path's extent, by which the pose may leave the path's box
 
 
@@ -67,7 +67,10 @@ def free_motion(
     if within is not None:
         least, most = within.box()
         low, high = np.maximum(low, least), np.minimum(high, most)
-    answer = program.solve(guess, end, low, high, duration)
+    for slower in _SLOWER:
+        answer = program.solve(guess, end, low, high, slower * duration)
+        if answer.status == "Solve_Succeeded":
+            break
     if answer.status != "Solve_Succeeded":
         asked = {**limits.as_dict(), "payload": payload, "intervals": intervals, "path": path.as_dict()}
         raise TimingFailed("free", asked, f"IPOPT ended with {answer.status}")
@@ -91,7 +94,7 @@ def _require_clear(arch: Arch, motion: PoseSpline) -> None:
 
 
 def _guess(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int) -> tuple[Array, Array, float]:
-    """From toppra's law: the intervals' starts (k, 4 n) and the end (3 n,), by t / T, and the duration."""
+    """From toppra's law: the intervals' starts (k, 4 n) and the end (3 n,), by t / T, and its duration."""
     plain = replace(limits, jerk=None, position=None, stall_torque=None, no_load_speed=None, rms_torque=None)
     law = time_optimal(robot, path, plain, payload, 1000)
     motion = law.at(np.linspace(0.0, law.duration, intervals + 1))
@@ -102,7 +105,7 @@ def _guess(robot: Mechanism, path: Path, limits: Limits, payload: float, interva
     state[[0, -1], :n] = path.evaluate(np.array([0.0, path.length]), 0)[0]
     state[[0, -1], n:] = 0.0
     jerk = np.diff(state[:, 2 * n :], axis=0) * intervals
-    return np.hstack([state[:-1], jerk]), state[-1], _SLOWER * law.duration
+    return np.hstack([state[:-1], jerk]), state[-1], law.duration
 
 
 @lru_cache(maxsize=4)

@@ -34,7 +34,7 @@ _POWERS = {
 _OF_TORQUE = ("torque", "torque at speed", "rms torque")
 _ROUNDING = 1e-12
 # Steps of a further stretch: few and coarse, so that the answer does not hang on a bound's last digits.
-_LITTLE, _TRIES = 1e-5, 9
+_LITTLE, _TRIES = 1e-5, 11
 _NEEDED = 0.5  # of a bound's excess; accelerations fall by the square
 
 

@@ -144,6 +144,10 @@ def test_another_mechanisms_ranges_are_refused() -> None:
         Heli4(ranges=GoughStewart.Ranges())
 
 
-def test_ranges_are_told_apart_by_their_digest() -> None:
-    assert Heli4.Ranges().digest == Heli4.Ranges().digest
-    assert Heli4.Ranges().digest != Heli4.Ranges(passive=(1.0, 0.9)).digest
+def test_robots_of_other_ranges_or_working_modes_are_told_apart_by_their_conditions() -> None:
+    same = Heli4(home=[0.0, 0.0, -0.71, 0.0])
+    assert Heli4().conditions_digest == same.conditions_digest
+    assert Heli4().conditions_digest != Heli4(ranges=Heli4.Ranges(passive=(1.0, 0.9))).conditions_digest
+    assert Heli4().conditions_digest != Heli4(home=[0.0, 0.0, 0.7, 0.0]).conditions_digest
+    legs = GoughStewart(home=[0.0, 0.0, 0.61, 0.0, 0.0, 0.0])
+    assert GoughStewart().conditions_digest != legs.conditions_digest  # whose joints rest at home

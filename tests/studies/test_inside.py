@@ -97,5 +97,6 @@ def test_the_free_law_is_given_the_region_and_a_motion_that_leaves_it_is_refused
         time_cycle(study, robot)
     assert caught.value.exit_status == 1
     failed = caught.value.failed[0]
-    assert failed.found == pytest.approx(float(region.room(np.array(failed.pose), NAMES)), abs=1e-12)
+    room = float(region.room(np.array(failed.pose), NAMES))
+    assert room - 1e-10 <= failed.found <= room  # a bound over a short interval about that pose
     assert set(given) == {PoseBounds(*zip(*(region.intervals[name] for name in NAMES), strict=True))}

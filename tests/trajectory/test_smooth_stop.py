@@ -140,10 +140,17 @@ def test_every_margin_is_tried_before_a_stop_fails(
     assert tried == 4 * margins
 
 
-def test_where_braking_does_not_succeed_at_once_it_does_from_the_next_knot(robot: Heli4) -> None:
-    """A hair before a knot of the way back, whose limit just after the knot no programme sees."""
-    motion = repair(robot, jerk_limited(robot, Reversed(AdeptCycle()), LIMITS, 1.0), LIMITS, 1.0).motion
-    knot = motion.times[np.searchsorted(motion.times, 0.0157)]
+def test_where_braking_does_not_succeed_at_once_it_does_from_the_next_knot(
+    robot: Heli4, motion: TimedMotion, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    knot = motion.times[np.searchsorted(motion.times, 0.5 * motion.duration)]
+
+    def from_the_knot(*args: Any) -> TimeLaw:
+        if args[2] < knot:
+            raise TimingFailed("emergency stop", {}, "no pace")
+        return smooth_braking(*args)
+
+    monkeypatch.setattr(import_module("trajectory.emergency_stop"), "smooth_braking", from_the_knot)
     stop = emergency_stop(robot, motion, knot - 1.6e-7, LIMITS, 1.0)
     assert stop.motion.pace.speed[1] == 1.0
     assert stop.motion.pace.position[1] == knot

@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+
+from trajectory.jerk.compiled import compiled
 
 Array = np.ndarray
 LEAD = 3  # rows before the first one
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def factorise(band: Array) -> bool:
     """The factor in the matrix's place; False where the matrix is not positive definite."""
     band[:LEAD] = 0.0
@@ -31,7 +32,7 @@ def factorise(band: Array) -> bool:
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def solve_factorised(factor: Array, x: Array) -> None:
     """Solve in place for a right-hand side (n + 3,) whose first three entries are 0."""
     for i in range(LEAD, x.size):

@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
+from trajectory.jerk.compiled import compiled
 from trajectory.jerk.rows import PARTS, Array, Rows
-from trajectory.jerk.stations import compiled, cubic_basis
+from trajectory.jerk.stations import cubic_basis
 
 _FINER = 4  # times as many places as stations
 _PLACES = np.linspace(0.0, 1.0, _FINER * PARTS + 1)  # of each interval

@@ -8,7 +8,7 @@ from trajectory.jerk.motion import SquaredRate
 from trajectory.jerk.rows import PARTS, Array, progress_at
 from trajectory.path import Path
 
-LEAST_IN_PIECE = 3  # intervals between two of the path's knots
+LEAST_IN_PIECE = 6  # intervals between two of the path's knots: so many follow a corner's coefficients
 _BY_TIME = 0.8  # share of the knots that stand at equal times; the others at equal u
 _BY_EXCESS = 0.2  # share of all the knots that stand where rows are exceeded between the stations
 _SHORTEST = 1e-9  # of u: closer knots of the path are one

@@ -11,6 +11,7 @@ from trajectory.timing import TimeLaw
 
 _FAITHFUL = 3e-4  # of a limit of jerk: how far the law's may be from the motion's
 _HALVINGS = 12
+_STEEPEST = 1.35  # w times an interval's size over x; from 1.5 on a cubic may pass below 0
 
 
 class SquaredRate(NamedTuple):
@@ -39,6 +40,14 @@ class SquaredRate(NamedTuple):
         )
         found[1::2] = 3.0 * (c - a) * t * (1.0 - t) / size + b * (1.0 - t) * (1.0 - 3.0 * t) + d * t * (3.0 * t - 2.0)
         return found
+
+    def on(self, knots: Array) -> SquaredRate:
+        """About the same on other knots, with slopes so small that x stays above 0."""
+        values, sizes = self.at(knots), np.diff(knots)
+        steepest = _STEEPEST * values[::2]
+        values[1:-1:2] = np.maximum(values[1:-1:2], -steepest[:-1] / sizes)
+        values[3::2] = np.minimum(values[3::2], steepest[1:] / sizes)
+        return SquaredRate(knots, values)
 
     def finer(self, parts: int) -> SquaredRate:
         """The same on so many times as many intervals."""

@@ -8,8 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from trajectory.jerk.banded import LEAD, factorise, solve_factorised
+from trajectory.jerk.compiled import compiled
 from trajectory.jerk.rows import PARTS, Array, Rows
-from trajectory.jerk.stations import STATIONS, WEIGHTS, compiled
+from trajectory.jerk.stations import STATIONS, WEIGHTS
 
 _LEAST_CURVATURE = 0.1  # of the time's, which a mean square torque can use up
 
@@ -167,18 +168,23 @@ def _add_station(base: Array, at: int, local: Array, force: Array, loose: Array,
 
 
 @compiled
-def solve_step(of: Newton, mean_slack: Array, mean_dual: Array, target: float, price: float) -> tuple[bool, float]:
+def solve_step(of: Newton, mean_slack: Array, mean_dual: Array, mean_pull: Array, price: float) -> tuple[bool, float]:
     """The step in place of the right-hand side.
 
+    Args:
+        of: the equations.
+        mean_slack, mean_dual, mean_pull: (m or 0,) of the mean squares; the last what each presses with.
+        price: of the loosening, in units of the time.
+
     Returns:
-        Whether there is one, and that of the loosening, whose price is in units of the time; 0 where it has none.
+        Whether there is one, and that of the loosening; 0 where it has no price.
     """
     if not factorise(of.band):
         return False, 0.0
     count = mean_slack.size
     apart, small = of.means.copy(), np.empty((count, count))
     for j in range(count):
-        of.right[:] -= target / mean_slack[j] * of.means[j]
+        of.right[:] -= mean_pull[j] * of.means[j]
         solve_factorised(of.band, apart[j])
     for i in range(count):
         for j in range(count):

@@ -16,7 +16,7 @@ from trajectory.jerk.mesh import first_mesh, next_mesh, piece_edges
 from trajectory.jerk.motion import SquaredRate
 from trajectory.jerk.refusal import refuse
 from trajectory.jerk.rows import PARTS, Array, Rows, rows_of, uniform_rate, weight_use
-from trajectory.jerk.search import SOLVED, search
+from trajectory.jerk.search import SOLVED, Kept, search
 from trajectory.jerk.stations import keeping, row_count
 from trajectory.limits import Limits
 from trajectory.path import Path
@@ -37,8 +37,7 @@ _LITTLE = 0.1  # share of a motion's squared rate: with less it is a poor start
 _PRESSED = (1e-2,)  # barriers of further tries
 _HELD = 1.1  # by what more than needed rows are loosened
 _INSIDE = 1e-2  # barrier where a motion far from the rows is sought
-_RAISED = 1e-3  # of the largest x, where a motion would stand
-_PLACES = 12  # of each interval, where it is looked at
+_ROOM = 5e-4  # of every row that is left where the drives cannot hold the weight: there no stretch mends a motion
 _PRICE = 1e3  # of what loosens the forces, in units of the slow motion's time
 _FASTEST = 1e6  # of x in units of the slow motion's, where nothing bounds it
 _SLOWER = 0.98  # of the rate that just keeps every row
@@ -127,7 +126,7 @@ def _on_finer_knots(problem: Problem, edges: Array, found: _Found, intervals: in
     over = np.clip(_uses(before.motion, before.rows).max(axis=1) - 1.0, 0.0, 1.0)
     knots = next_mesh(edges, before.motion, over, intervals)
     rows = _in_unit(rows_of(*problem, knots), before.unit)
-    start = SquaredRate(knots, before.motion.at(knots))
+    start = before.motion.on(knots)
     return _searched(start, rows, before.unit, found.duals.means, _NEAR, _CLOSELY)
 
 
@@ -151,55 +150,46 @@ def _searched(
     start: SquaredRate, rows: Rows, unit: float, means: Array, barrier: float, tolerance: float
 ) -> _Found | None:
     """From a motion, slowed down until it keeps every row; None where no motion was found that does."""
-    tight, ones, sizes = _untightened(rows, start)
-    y = _kept(start, rows, tight)
+    kept = _untightened(rows, start)
+    y = _started(start, kept)
     if y is None:
         return None
     for pressed in (barrier, *_PRESSED):
-        duals, found = _Duals(_no_duals(sizes.size, rows), means.copy()), y.copy()
-        status, _, time, _ = search(sizes, rows, tight, ones, found, *duals, pressed, tolerance, _STEPS, 0.0, 0.0)
+        duals, found = _Duals(_no_duals(kept), means.copy()), y.copy()
+        status, _, time = search(kept, found, *duals, pressed, tolerance, _STEPS, 0.0, 0.0)
         if status == SOLVED:
             break
     motion = SquaredRate(start.knots, found)
-    return _Found(
-        Answer(motion, rows, unit, time, tolerance, float(_uses(motion, rows).max())), duals, status == SOLVED
-    )
+    answer = Answer(motion, rows, unit, time, tolerance, float(_uses(motion, rows).max()))
+    return _Found(answer, duals, status == SOLVED)
 
 
-def _untightened(rows: Rows, motion: SquaredRate) -> tuple[Array, Array, Array]:
-    """What rows and means are kept to at first, and the sizes of the intervals."""
+def _untightened(rows: Rows, motion: SquaredRate) -> Kept:
+    """What is kept at first."""
     sizes = np.diff(motion.knots)
-    return np.ones((sizes.size, rows.tight_count)), np.ones(rows.mean.shape[1]), sizes
+    most = 1.0 if weight_use(rows) <= 1.0 else 1.0 - _ROOM
+    return Kept(sizes, rows, np.full((sizes.size, rows.tight_count), most), np.ones(rows.mean.shape[1]))
 
 
-def _kept(start: SquaredRate, rows: Rows, tight: Array) -> Array | None:
+def _started(start: SquaredRate, kept: Kept) -> Array | None:
     """The start slowed down until it keeps the rows or, where that is not enough, another motion; None without one.
 
     Where the drives cannot hold the weight, slowing down does not help: the rows are loosened until the start keeps
     them, and drawn in again. Where it helps too late, a motion found so is the better start.
     """
-    _, ones, sizes = _untightened(rows, start)
-    share = keeping(sizes, rows, tight, ones, start.values)
+    share = keeping(kept.sizes, kept.rows, kept.tight, start.values)
     if share > _LITTLE:
         return share * start.values
-    moving = _never_at_rest(start)
-    loose = _HELD * float((_uses(moving, rows) - tight).max()) + _HELD - 1.0
-    y, duals = moving.values.copy(), _Duals(_no_duals(sizes.size, rows), np.zeros(ones.size))
-    status, *_ = search(sizes, rows, tight, ones, y, *duals, _INSIDE, 0.0, _DRAWING, loose, _PRICE)
+    loose = _HELD * float((_uses(start, kept.rows) - kept.tight).max()) + _HELD - 1.0
+    y, duals = start.values.copy(), _Duals(_no_duals(kept), np.zeros(kept.mean_tight.size))
+    status, *_ = search(kept, y, *duals, _INSIDE, 0.0, _DRAWING, loose, _PRICE)
     if status == SOLVED:
         return y
     return share * start.values if share else None
 
 
-def _never_at_rest(motion: SquaredRate) -> SquaredRate:
-    """With x raised alike everywhere until it is above 0 between the knots too."""
-    x = motion.finer(_PLACES).values[::2]
-    raised = 0.0 if x.min() > 0.0 else float(_RAISED * x.max() - 2.0 * x.min())
-    return motion._replace(values=motion.values + np.tile([raised, 0.0], motion.knots.size))
-
-
-def _no_duals(intervals: int, rows: Rows) -> Array:
-    return np.zeros((intervals, PARTS + 1, row_count(rows)))
+def _no_duals(kept: Kept) -> Array:
+    return np.zeros((kept.sizes.size, PARTS + 1, row_count(kept.rows)))
 
 
 def _holding(rows: Rows) -> Array:
@@ -218,16 +208,17 @@ def _uses(motion: SquaredRate, rows: Rows) -> Array:
 
 def _tightened(answer: Answer, duals: _Duals) -> Answer:
     """On the same knots, until the rows are kept between the stations too, or nearly."""
-    motion, rows, sizes = answer.motion, answer.rows, answer.sizes
-    use, means = _uses(motion, rows), np.ones(rows.mean.shape[1])
-    tight, floor, best = np.ones_like(use), _holding(rows), answer
+    motion, rows = answer.motion, answer.rows
+    kept, floor, best, use = _untightened(rows, motion), _holding(rows), answer, _uses(motion, rows)
+    aim = float(kept.tight[0, 0])
     for _ in range(_ROUNDS):
-        if best.use <= 1.0 + _KEPT:
+        if best.use <= aim + _KEPT:
             break
-        tight = np.maximum(tight / np.where(use > 1.0, use * (1.0 + _KEPT / 2), 1.0), floor)
-        if (y := _kept(motion, rows, tight)) is None:
+        tight = kept.tight / np.where(use > aim, use / aim * (1.0 + _KEPT / 2), 1.0)
+        kept = kept._replace(tight=np.maximum(tight, floor))
+        if (y := _started(motion, kept)) is None:
             break
-        status, _, time, _ = search(sizes, rows, tight, means, y, *duals, _SAME, _CLOSELY, _STEPS, 0.0, 0.0)
+        status, _, time = search(kept, y, *duals, _SAME, _CLOSELY, _STEPS, 0.0, 0.0)
         if status != SOLVED:
             break
         motion = SquaredRate(motion.knots, y)
