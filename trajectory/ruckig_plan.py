@@ -67,12 +67,6 @@ def fastest_move(
     Raises:
         TimingFailed: it would take too long, or ruckig reports anything but success.
     """
-    longest = float((np.abs(target - start) / np.asarray(limits.speed)).max())
-    if longest * parts / period > _MOST_SAMPLES:
-        most = _MOST_SAMPLES * period / parts
-        raise TimingFailed(
-            "ruckig", asked, f"it takes at least {longest:.4g} s at its speed limit, more than {most:g} s"
-        )
     given = _input(limits)
     given.current_position, given.target_position = start.tolist(), target.tolist()
     return _profile(given, period, parts, asked)
@@ -107,10 +101,14 @@ def _profile(given: InputParameter, period: float, parts: int, asked: Mapping[st
         raise TimingFailed("ruckig", asked, "no solution: it would take longer than ruckig can plan") from error
     if result not in (Result.Working, Result.Finished):
         raise TimingFailed("ruckig", asked, f"no solution ({Result(result).name})")
+    if plan.duration * parts > (most := _MOST_SAMPLES * period):
+        raise TimingFailed("ruckig", asked, f"it takes {plan.duration:.4g} s, more than {most / parts:g} s")
     count = max(1, round(plan.duration / period))  # a period at rest where the target is the start
     if plan.duration > 0.0 and abs(count * period - plan.duration) > _ROUNDING * period:
         raise TimingFailed("ruckig", asked, f"{plan.duration} s is no whole number of periods")
     times = np.arange(count * parts + 1) * (period / parts)
     times[-1] = count * period
-    rows = np.array([plan.at_time(min(t, plan.duration)) for t in times.tolist()])  # one time at a time
+    rows = np.empty((times.size, 3, given.degrees_of_freedom))
+    for row, t in zip(rows, times.tolist(), strict=True):  # ruckig takes one time at a time
+        row[:] = plan.at_time(min(t, plan.duration))
     return Profile(times, rows[:, 0], rows[:, 1], rows[:, 2], count)

@@ -27,7 +27,7 @@ from trajectory.sampling import integrals, settled_parts, way_of
 from trajectory.timed import TimedMotion
 from trajectory.usage import Use, uses
 
-_SMOOTH = 1e-9  # of the largest s'': a smaller jump is rounding
+_SMOOTH = 1e-9  # of the largest q'', or of the duration at the jerk limit: a smaller jump of q'' is rounding
 _TOLERANCES = {  # relative, to the sizes that `Verification.residuals` names
     "start pose": 1e-9,
     "end pose": 1e-9,
@@ -168,9 +168,11 @@ def _peaks(
 ) -> tuple[tuple[Peak, ...], tuple[str, ...]]:
     found = uses(robot, motion, limits)
     jump_time, jump = _jump(times, motion.joints.second, before.joints.second)
-    if jump <= _SMOOTH * np.abs(motion.joints.second).max():
+    jerk = found["joint jerk"].limit
+    largest = max(np.abs(motion.joints.second).max(), 0.0 if jerk is None else times[-1, -1] * jerk.min())
+    if jump <= _SMOOTH * largest:
         return tuple(_peak(robot, times, name, use) for name, use in found.items()), ()
-    jerk = found.pop("joint jerk").limit
+    del found["joint jerk"]
     peaks = [_peak(robot, times, name, use) for name, use in found.items()]
     if jerk is not None:
         peaks.append(Peak("joint jerk", None, jump_time, math.inf, float(jerk.min()), math.inf))

@@ -170,6 +170,14 @@ class Hidden(RoundedPath):
     stops = None
 
 
+@pytest.mark.parametrize("blend", [7e-8, 1e-5])
+def test_a_tiny_rounded_corner_is_no_kink(robot: Heli4, blend: float) -> None:
+    """Rounding of the arc length moves its second derivative by far more than of a wide corner's."""
+    poses = ((-0.1, 0.0, -0.75, 0.0), (0.05, 0.02, -0.7, 0.4), (0.1, -0.03, -0.8, -0.2))
+    path = RoundedPath(("x", "y", "z", "theta"), poses, (blend,))
+    assert time_optimal(robot, path, Limits(speed=1.0, torque=500.0), 0.0, 1000).kink < 1e-12
+
+
 @pytest.mark.parametrize("turn", [5e-5, 1.5e-4, 4e-3])
 def test_a_corner_too_small_for_the_integrals_is_found_all_the_same(robot: Heli4, limits: Limits, turn: float) -> None:
     """A tangent that jumps by a hair: the speed steps, and no proof inside the parts can see it."""
