@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from design.certificate import MOST_BOXES, SEED, Certificate, Progress, answer, suspects
+from design.budget import Budget
+from design.certificate import MOST_BOXES, SEED, Certificate, Progress, answer, checked_boxes, suspects
 from design.region import Region
 from design.statement import Statement
 from kinematics import FviBounds, Mechanism
-from kinematics.errors import InvalidValue
+from kinematics.arguments import positive
 
 _MOST_TRIES = 12  # of bounds, the refuted ones included
 _COARSEST = 6  # doublings of the tolerance
@@ -40,6 +41,7 @@ def best_bound(
     bounds: FviBounds | None = None,
     characteristic_length: float | None = None,
     most_boxes: int = MOST_BOXES,
+    seconds: float = math.inf,
     progress: Progress = lambda _: None,
 ) -> BestBound | None:
     """The largest bound that is proved, to a tolerance in the margin's unit; None where nothing is proved.
@@ -50,22 +52,21 @@ def best_bound(
     unless the tolerance itself asks for it.
 
     Args:
-        most_boxes: for all tries together; a single one gets a quarter.
+        most_boxes, seconds: for all tries together; a single one gets a quarter of the boxes and half of the time left.
         robot, region, margin, bounds, characteristic_length, progress: as in `certify`.
     """
-    if not (np.isfinite(tolerance) and tolerance > 0.0):
-        raise InvalidValue("tolerance", tolerance, "a finite number > 0")
+    tolerance, budget = positive("tolerance", tolerance), Budget(seconds)
     statement = Statement.of(robot, margin, 0.0, bounds, characteristic_length)  # the bound is what is sought
     region.check(robot.pose_names)
-    share = max(1, most_boxes // _SHARES)
-    sampled = float(statement.value(suspects(statement, region, 10 * SEED)[0]))
+    share = max(1, checked_boxes(most_boxes) // _SHARES)
+    sampled = float(statement.value(suspects(statement, region, 10 * SEED, budget.share(_SHARES))[0]))
     best: Certificate | None = None
     undecided, proved, doublings = -1, _coarsest(sampled, tolerance) + 1, 0
     for _ in range(_MOST_TRIES):
-        if not np.isfinite(sampled) or undecided + 1 >= proved:
+        if not np.isfinite(sampled) or undecided + 1 >= proved or budget.spent:
             break
         attempt = replace(statement, at_least=sampled - math.ldexp(tolerance, doublings))
-        certificate = answer(attempt, region, share, progress)
+        certificate = answer(attempt, region, share, budget.share(2), progress)
         if certificate.counterexample is not None:
             sampled = float(statement.value(certificate.counterexample))
             continue

@@ -1,4 +1,4 @@
-"""Cut a region into boxes until each is proved, one fails, or the allowance is used up.
+"""Cut a region into boxes until each is proved, one fails, or the allowance of boxes or of time is used up.
 
 Boxes are taken depth first in batches, so memory stays bounded by a few batches a level.
 """
@@ -10,7 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from design.budget import Budget
 from design.lower_bounds import LowerBounds
+from design.refutation import Refutation, Refuter
 from design.region import Region
 from design.symmetry import Mirrors, one_side
 from design.tree import BATCH, OUTSIDE, PROVED, Tree, halves, outside, root
@@ -28,23 +30,31 @@ class Search:
         codes: (nodes,) the tree by level.
         boxes: how many boxes were bounded.
         left: (k, 2, n) lower and upper bounds of the boxes that were not proved.
-        counterexample: (n,) a pose that fails, else None.
+        refutation: a pose that fails, else None.
     """
 
     codes: Array
     boxes: int
     left: Array
-    counterexample: Array | None
+    refutation: Refutation | None
 
 
 def search(
-    bounds: LowerBounds, region: Region, mirrors: Mirrors, most_boxes: int, progress: Callable[[str], None]
+    bounds: LowerBounds,
+    refuter: Refuter,
+    region: Region,
+    mirrors: Mirrors,
+    most_boxes: int,
+    budget: Budget,
+    progress: Callable[[str], None],
 ) -> Search:
     """Bound boxes, cut those that stay open along the coordinate that spreads their claims the most.
 
     Args:
         bounds: of the statement, over a region that holds this one.
+        refuter: of the same statement.
         mirrors: those that allow to look at one side only.
+        most_boxes, budget: what ends it undecided, with the boxes that are left.
         progress: told how far it is after each batch.
     """
     names = bounds.statement.robot.pose_names
@@ -53,8 +63,8 @@ def search(
     tree = Tree()
     stack = [(np.zeros(1, dtype=np.int64), low, high)]
     small: list[Array] = []
-    boxes, counterexample = 0, None
-    while stack and boxes < most_boxes and len(small) < _MOST_SMALL and counterexample is None:
+    boxes, refutation = 0, None
+    while stack and boxes < most_boxes and len(small) < _MOST_SMALL and refutation is None and not budget.spent:
         nodes, low, high = _take(stack, min(BATCH, most_boxes - boxes))
         off = outside(region, low, high, names)
         tree.leaves(nodes[off], OUTSIDE)
@@ -67,7 +77,7 @@ def search(
         nodes, low, high, spread = nodes[~proved], low[~proved], high[~proved], spread[~proved]
         if not len(nodes):
             continue
-        counterexample = bounds.statement.refutation(region, 0.5 * low + 0.5 * high)
+        refutation = refuter.refutation(region, 0.5 * low + 0.5 * high)
         tiny = ((high - low) / extent <= SMALLEST).all(axis=1)
         small += list(np.stack([low[tiny], high[tiny]], axis=1))
         nodes, low, high, spread = nodes[~tiny], low[~tiny], high[~tiny], spread[~tiny]
@@ -75,7 +85,7 @@ def search(
         stack.append((tree.cut(nodes, axis), *halves(low, high, axis)))
     left = [np.stack([low, high], axis=1) for _, low, high in stack]
     left.append(np.array(small).reshape(-1, 2, len(names)))
-    return Search(tree.by_level(), boxes, np.concatenate(left), counterexample)
+    return Search(tree.by_level(), boxes, np.concatenate(left), refutation)
 
 
 def _take(stack: list[tuple[Array, Array, Array]], most: int) -> tuple[Array, Array, Array]:

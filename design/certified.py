@@ -6,14 +6,17 @@ the cells of a section.
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 
 import numpy as np
 
+from design.budget import Budget
 from design.certificate import MOST_BOXES, Certificate, certify
 from design.region import Cylinder
 from kinematics import FviBounds, Mechanism
+from kinematics.arguments import positive
 from kinematics.errors import InvalidValue
 
 Array = np.ndarray
@@ -28,6 +31,7 @@ class CertifiedRegion:
         certificates: proofs whose regions together are the certified one; none where nothing is proved.
         boxes: how many boxes were bounded, those of attempts that came to nothing included.
         left: (k, 2, n) lower and upper bounds of boxes that were neither proved nor refuted.
+        complete: whether the search came to its end; not where its time ran out.
         seconds: wall-clock time.
     """
 
@@ -36,6 +40,7 @@ class CertifiedRegion:
     certificates: tuple[Certificate, ...]
     boxes: int
     left: Array
+    complete: bool
     seconds: float
 
     @property
@@ -61,10 +66,11 @@ def certified_cylinder(
     margin: str,
     *,
     at_least: float,
-    tolerance: float = 1e-3,
+    tolerance: float | None = None,
     bounds: FviBounds | None = None,
     characteristic_length: float | None = None,
     most_boxes: int = MOST_BOXES,
+    seconds: float = math.inf,
 ) -> CertifiedRegion:
     """The largest radius, to a tolerance, up to the region's, with which the margin is proved; by bisection.
 
@@ -74,16 +80,16 @@ def certified_cylinder(
         robot: the mechanism with its geometry.
         region: the largest cylinder of the family; its other coordinates hold for all.
         margin, at_least, bounds, characteristic_length, most_boxes: as in `certify`, for each radius.
-        tolerance: of the radius [m].
+        tolerance: of the radius [m]; a thousandth of the region's by default.
+        seconds: for all radii together; a single one gets half of what is left.
 
     Raises:
         InvalidRegion, InvalidValue: see `certify`; or a tolerance not above 0 or finer than doubles.
     """
-    if not (np.isfinite(tolerance) and tolerance > 0.0):
-        raise InvalidValue("tolerance", tolerance, "a finite number > 0")
+    tolerance = positive("tolerance", region.radius / 1000.0 if tolerance is None else tolerance)
     if tolerance < (finest := float(np.spacing(region.radius))):
         raise InvalidValue("tolerance", tolerance, f"at least {finest:.3g} m, the step between radii of this size")
-    started, best, boxes = time.perf_counter(), [], 0
+    started, best, boxes, budget = time.perf_counter(), [], 0, Budget(seconds)
     others = {name: pair for name, pair in region.intervals.items() if name not in ("x", "y")}
     left = np.empty((0, 2, len(robot.pose_names)))
     low, high, radius = 0.0, region.radius, region.radius
@@ -96,13 +102,15 @@ def certified_cylinder(
             bounds=bounds,
             characteristic_length=characteristic_length,
             most_boxes=most_boxes,
+            seconds=budget.share(2).seconds,
         )
         boxes += found.boxes
         if found.status == "proved":
             low, best = radius, [found]
         else:
             high, left = radius, found.left if found.status == "undecided" else left
-        if high - low <= tolerance or low == region.radius:
-            break
         radius = 0.5 * (low + high)
-    return CertifiedRegion(margin, at_least, tuple(best), boxes, left, time.perf_counter() - started)
+        complete = high - low <= tolerance or low == region.radius
+        if complete or budget.spent or radius in (low, high):
+            break
+    return CertifiedRegion(margin, at_least, tuple(best), boxes, left, complete, time.perf_counter() - started)

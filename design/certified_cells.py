@@ -5,21 +5,25 @@ A lower bound of what holds, as in `certified`.
 
 from __future__ import annotations
 
+import math
 import time
+from collections import deque
 
 import numpy as np
 
-from design.certificate import Certificate, answer_by_boxes
+from design.budget import Budget
+from design.certificate import Certificate, answer_by_boxes, checked_boxes
 from design.certified import CertifiedRegion
 from design.errors import InvalidSection
 from design.index import index_of
 from design.lower_bounds import LowerBounds
 from design.maps import Map, map_of
+from design.refutation import Refuter
 from design.region import Box, Region
 from design.section import Section
 from design.statement import Statement
 from kinematics import FviBounds, Mechanism
-from kinematics.errors import InvalidValue
+from kinematics.arguments import whole
 
 Array = np.ndarray
 DEPTH = 7  # at most 2^7 cells along each axis
@@ -37,6 +41,7 @@ def certified_cells(
     bounds: FviBounds | None = None,
     characteristic_length: float | None = None,
     most_boxes: int = MOST_BOXES_A_CELL,
+    seconds: float = math.inf,
 ) -> CertifiedRegion:
     """The cells of a plane over which the margin is proved for all values of the other coordinates.
 
@@ -50,31 +55,36 @@ def certified_cells(
         margin, at_least, bounds, characteristic_length: as in `certify`.
         depth: the smallest cells are the region's sides over 2^depth.
         most_boxes: of each attempt.
+        seconds: of all; the largest cells come first, and cells that are not reached in time are not proved.
 
     Raises:
         InvalidRegion, InvalidValue: see `certify`.
         InvalidSection: see `Section.check`, or the region is not a box.
+        OutOfTime: the map itself takes longer.
     """
     if not isinstance(region, Box):
         raise InvalidSection("cells", repr(region), "a Box; a Cylinder has `certified_cylinder`")
-    if not 0 <= depth <= 10:
-        raise InvalidValue("depth", depth, "a whole number from 0 to 10")
-    started, nodes = time.perf_counter(), 2**depth + 1
+    started, nodes, budget = time.perf_counter(), 2 ** whole("depth", depth, 0, 10) + 1, Budget(seconds)
     statement = Statement.of(robot, margin, at_least, bounds, characteristic_length)
     index = index_of(robot, margin, statement.bounds, statement.length)
-    chart = map_of(index, Section(region, axes), robot.pose_names, (nodes, nodes))
-    proved, boxes, left = _proofs(LowerBounds(statement, region), chart, nodes - 1, most_boxes)
-    return CertifiedRegion(margin, at_least, tuple(proved), boxes, left, time.perf_counter() - started)
+    chart = map_of(index, Section(region, axes), robot.pose_names, (nodes, nodes), seconds=seconds)
+    most_boxes, lower = checked_boxes(most_boxes), LowerBounds(statement, region)
+    proved, boxes, left, complete = _proofs(lower, chart, nodes - 1, most_boxes, budget)
+    return CertifiedRegion(margin, at_least, tuple(proved), boxes, left, complete, time.perf_counter() - started)
 
 
-def _proofs(lower: LowerBounds, chart: Map, size: int, most_boxes: int) -> tuple[list[Certificate], int, Array]:
-    """The proved cells of a chart of `size` by `size`, the boxes bounded, and those left of smallest cells."""
-    holds = chart.goodness >= lower.statement.at_least  # NaN is not
-    cells, proved, left, boxes = [(0, 0, size)], [], [np.empty((0, 2, chart.poses.shape[-1]))], 0
-    while cells:
-        column, row, size = cells.pop()
+def _proofs(
+    lower: LowerBounds, chart: Map, size: int, most_boxes: int, budget: Budget
+) -> tuple[list[Certificate], int, Array, bool]:
+    """The proved cells of a chart of `size` by `size`, the boxes bounded, those left of smallest cells, and whether
+    all cells were tried.
+    """
+    holds, refuter = chart.goodness >= lower.statement.at_least, Refuter(lower.statement)  # NaN does not hold
+    cells, proved, left, boxes = deque([(0, 0, size)]), [], [np.empty((0, 2, chart.poses.shape[-1]))], 0
+    while cells and not budget.spent:
+        column, row, size = cells.popleft()
         if holds[row : row + size + 1, column : column + size + 1].all():
-            found = answer_by_boxes(lower, _cell(chart, column, row, size), most_boxes, lambda _: None)
+            found = answer_by_boxes(lower, refuter, _cell(chart, column, row, size), most_boxes, budget, lambda _: None)
             boxes += found.boxes
             if found.status == "proved":
                 proved.append(found)
@@ -84,7 +94,7 @@ def _proofs(lower: LowerBounds, chart: Map, size: int, most_boxes: int) -> tuple
         if size > 1:
             half = size // 2
             cells += [(column + i * half, row + j * half, half) for i in (0, 1) for j in (0, 1)]
-    return proved, boxes, np.concatenate(left)
+    return proved, boxes, np.concatenate(left), not cells
 
 
 def _cell(chart: Map, column: int, row: int, size: int) -> Box:

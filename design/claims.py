@@ -15,25 +15,27 @@ is rewritten. The lemmas:
   factors in the middle of the box, so M is nearly the identity. A square J_mw = diag(1 / b) A needs no M: with
   A S in place of J, p_i = b_i S adj(A S) e_i / det(A S). Then b_i = 0 breaks speed i, as a_i = 0 would break det A.
 
-- A passive joint's angle: `PassiveJoint.within`, sines and cosines in place of the arctangent, where the limb reaches.
+- A passive joint's angle: `PassiveJoint.within`, sines and cosines in place of the arctangent.
 - A clearance between segments is at least c where any vector w, not 0, parts them: w . (p - q) - c |w| >= 0 for the
   ends p of one and q of the other, as then all of their points are so far apart along w. The shortest line between the
   segments in the middle of the box serves as w.
 
-That the scales are positive is claimed with the rest; the FVI's own numbers and the length must be. S is an input of
-its own: any numbers are right, good ones only make the bounds tight. So are the w.
+That the scales are positive is claimed with the rest, and that every limb reaches (`reaching`), whatever the margin.
+The FVI's own numbers and the length must be positive. S is an input of its own: any numbers are right, good ones only
+make the bounds tight. So are the w.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from types import SimpleNamespace
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
+from design.reaching import reach_rows
 from design.scaling import near_inverse
 from design.statement import Statement
 from kinematics import FviBounds, Mechanism
@@ -88,24 +90,41 @@ class Claims:
 
 
 def claims_of(statement: Statement, numbers: Numbers, inside: Array) -> Claims:
-    """What is to be shown for a statement; where its bound is not above 0 the plain components serve.
+    """What is to be shown for a statement: its margin, and that every limb reaches.
 
     Args:
         numbers: symbols for the bound and what the FVI is measured with.
         inside: (n,) a pose of the region, which gives the signs.
     """
+    claims = _of_margin(statement, numbers, inside)
+    reach = reach_rows(statement.robot, claims.expressions)
+    return replace(claims, expressions=ca.vertcat(claims.expressions, reach))
+
+
+def defining_rows(statement: Statement, numbers: Numbers) -> ca.SX:
+    """(k,) expressions, all at least 0 if and only if the margin, where it has a value, reaches the bound."""
+    robot = statement.robot
+    if statement.margin == "passive_joint":
+        return robot.passive_rows(lambda joint, limits: joint.within(limits, numbers.bound))
+    return robot.margin_components(statement.margin, numbers.fvi, numbers.length) - numbers.bound
+
+
+def _of_margin(statement: Statement, numbers: Numbers, inside: Array) -> Claims:
+    """Where the bound is not above 0 the plain components serve."""
     robot, margin, positive = statement.robot, statement.margin, statement.at_least > 0.0
-    exact = {"passive_joint": _passive_joint, "clearance": _clearance}.get(margin)
-    if exact is not None:
-        return exact(robot, numbers)
+    if margin == "passive_joint":
+        return Claims(defining_rows(statement, numbers), ca.SX(0, 0))
+    if margin == "clearance":
+        return _clearance(robot, numbers)
     maker = {"det_J_x": _det_j_x, "J_q": _j_q, "det_J_q": _det_j_q, "fvi": _fvi}.get(margin)
     if maker is not None and positive:
         return maker(robot, numbers, inside)
     components = robot.margin_components(margin, numbers.fvi, numbers.length)
     parts = [part for i in range(components.numel()) for part in sides(components[i])]
+    parts = [part for part in parts if not (part.is_constant() and float(part) == np.inf)]  # nothing limits these
     if positive:
         parts = [_signed(robot, p.dep(0), inside) if p.op() == ca.OP_FABS else p for p in parts]
-    return Claims(ca.vertcat(*parts) - numbers.bound, ca.SX(0, 0))
+    return Claims(ca.vertcat(*parts) - numbers.bound if parts else ca.SX(0, 1), ca.SX(0, 0))
 
 
 def _signed(robot: Mechanism, expression: ca.SX, inside: Array) -> ca.SX:
@@ -113,12 +132,6 @@ def _signed(robot: Mechanism, expression: ca.SX, inside: Array) -> ca.SX:
     model = robot.model()
     at = ca.Function("sign", [model.pose, model.geometry], [expression])(inside, robot.geometry.vector())
     return ca.SX(np.where(np.array(at) < 0.0, -1.0, 1.0)) * expression
-
-
-def _passive_joint(robot: Mechanism, numbers: Numbers) -> Claims:
-    model = robot.model()
-    rows = robot.passive_rows(lambda joint, limits: joint.within(limits, numbers.bound))
-    return Claims(ca.vertcat(rows, robot.reach(model.pose, model.g) - _POSITIVE), ca.SX(0, 0))
 
 
 def _clearance(robot: Mechanism, numbers: Numbers) -> Claims:
@@ -135,7 +148,7 @@ def _clearance(robot: Mechanism, numbers: Numbers) -> Claims:
 def _directions(gaps: Array) -> Array:
     """(k, 3, c) each column over its length; e_x where it has none."""
     size = np.linalg.norm(gaps, axis=1, keepdims=True)
-    usable = np.isfinite(size) & (size > 1e-12)
+    usable = np.isfinite(size) & (size > 1e-150)  # far above where squares underflow
     return np.where(usable, gaps / np.where(usable, size, 1.0), np.array([1.0, 0.0, 0.0])[:, None])
 
 

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from kinematics.errors import LinkwrightError
+from kinematics.errors import LinkwrightError, plain
+
+if TYPE_CHECKING:
+    from design.exchange import Candidate
 
 
 class InvalidRegion(LinkwrightError):
@@ -12,7 +16,7 @@ class InvalidRegion(LinkwrightError):
 
     def __init__(self, key: str, found: object, expected: str) -> None:
         self.key, self.found, self.expected = key, found, expected
-        super().__init__(f"region, {key}: found {found}; expected {expected}")
+        super().__init__(f"region, {key}: found {plain(found)}; expected {expected}")
 
 
 class InvalidSection(LinkwrightError):
@@ -20,27 +24,28 @@ class InvalidSection(LinkwrightError):
 
     def __init__(self, key: str, found: object, expected: str) -> None:
         self.key, self.found, self.expected = key, found, expected
-        super().__init__(f"section, {key}: found {found}; expected {expected}")
+        super().__init__(f"section, {key}: found {plain(found)}; expected {expected}")
 
 
-class NotConverged(LinkwrightError):
-    """A figure that still moves by more than was asked on the finest grid."""
+class OutOfTime(LinkwrightError):
+    """A search that could not come to a first answer within its time."""
 
     exit_status = 1
 
-    def __init__(self, what: str, moved: float, tolerance: float, hint: str) -> None:
-        self.what, self.moved, self.tolerance = what, moved, tolerance
-        super().__init__(f"{what}: still moves by {moved:.3g} on the finest grid; expected {tolerance:.3g}; {hint}")
+    def __init__(self, what: str, seconds: float, reached: str) -> None:
+        self.what, self.seconds, self.reached = what, seconds, reached
+        super().__init__(f"{what}: {seconds:g} s were used up at {reached}; expected more time, or a coarser question")
 
 
 class SynthesisFailed(LinkwrightError):
-    """The optimisation has no answer to stand by."""
+    """The optimisation has no answer to stand by; `best` is the best geometry that was seen all the same, or None."""
 
     exit_status = 1
 
-    def __init__(self, reason: str, status: str) -> None:
-        self.reason, self.status = reason, status
-        super().__init__(f"no optimum: {reason} (solver status: {status})")
+    def __init__(self, reason: str, status: str, best: Candidate | None = None) -> None:
+        self.reason, self.status, self.best = reason, status, best
+        seen = f"; best found: {best}" if best is not None else ""
+        super().__init__(f"no optimum: {reason} (solver status: {status}){seen}")
 
 
 class OtherCertificate(LinkwrightError):
@@ -50,7 +55,7 @@ class OtherCertificate(LinkwrightError):
 
     def __init__(self, what: str, found: object, expected: object) -> None:
         self.what, self.found, self.expected = what, found, expected
-        super().__init__(f"certificate, {what}: made for {found}; expected {expected}")
+        super().__init__(f"certificate, {what}: made for {plain(found)}; expected {plain(expected)}")
 
 
 class BrokenCertificate(LinkwrightError):
@@ -60,7 +65,7 @@ class BrokenCertificate(LinkwrightError):
 
     def __init__(self, reason: str, box: object = None) -> None:
         self.reason, self.box = reason, box
-        super().__init__(f"certificate: {reason}{f', box {box}' if box is not None else ''}")
+        super().__init__(f"certificate: {reason}{f', box {plain(box)}' if box is not None else ''}")
 
 
 class UnreadableCertificate(BrokenCertificate):

@@ -22,11 +22,13 @@ class Index:
         name: as in `index_names`.
         value: (..., n) poses -> (...,), NaN out of reach.
         smaller_is_better: only of the condition number; its worst is the largest.
+        least: a value that every pose within reach keeps; -inf where NaN alone tells which these are.
     """
 
     name: str
     value: Callable[[Array], Array]
     smaller_is_better: bool = False
+    least: float = -np.inf
 
     @property
     def sign(self) -> float:
@@ -57,7 +59,8 @@ def index_of(
     """
     length = characteristic_length
     if name in robot.margins:
-        return Index(name, lambda poses: robot.margin(name, poses, bounds, length))
+        least = 0.0 if name == "reach" else -np.inf
+        return Index(name, lambda poses: robot.margin(name, poses, bounds, length), least=least)
     if name in ("v_w", "f_w"):
         which = 0 if name == "v_w" else 1
         return Index(name, lambda poses: robot.isotropic(poses, length)[which])

@@ -3,7 +3,7 @@
 The map is taken as linear over the four triangles that each cell makes with its middle; the triangles are cut exactly
 at the bound and at a curved boundary of the region, and integrated exactly. What remains is the error of that
 interpolation, which falls with the square of the step; the grid is refined until no figure moves by more than a
-tolerance, and, where no node is good, to the finest: no finding says no more than that.
+tolerance, and, where that area is as good as none, to the finest, and then close around the part.
 """
 
 from __future__ import annotations
@@ -15,11 +15,13 @@ from typing import Any
 import numpy as np
 from contourpy import contour_generator
 
-from design.errors import NotConverged
+from design.budget import Budget
+from design.errors import OutOfTime
 from design.index import Index
-from design.maps import Map, map_of
+from design.maps import Map, Window, map_of, window_of
 from design.section import Section
-from kinematics.errors import InvalidValue
+from design.small_part import window_of_part
+from kinematics.arguments import finite, positive
 
 Array = np.ndarray
 COARSEST = 33  # nodes along an axis
@@ -55,16 +57,32 @@ class LevelSet:
     """Where an index is at least a bound (at most, for one that is better the smaller).
 
     Attributes:
-        map: the finest one, which the rest is from.
+        map: the finest one, which the rest is from; close around a part that is small beside the plane.
         bound: in the index's unit; None takes all that is in reach.
         figures: of the finest map.
-        coarser: of the map with half as many steps; the difference is what the figures moved by last.
+        coarser: of the map with half as many steps; the difference is what the figures moved by last. NaN where time
+            was for one map only.
+        moved: the largest change of a figure then, see `Integrals.moved`.
+        tolerance: what was asked of it.
     """
 
     map: Map
     bound: float | None
     figures: Integrals
     coarser: Integrals
+    moved: float
+    tolerance: float
+
+    @property
+    def settled(self) -> bool:
+        """Whether the figures stood still; where not, they are the finest grid's, and may be far off."""
+        return self.moved <= self.tolerance
+
+    @property
+    def whole(self) -> float:
+        """Area of the map [m^2; m rad or rad^2 where angles are on the axes]."""
+        first, second = self.map.first, self.map.second
+        return float((first[-1] - first[0]) * (second[-1] - second[0]))
 
     @property
     def step(self) -> tuple[float, float]:
@@ -79,41 +97,74 @@ class LevelSet:
 
 
 def level_set(
-    index: Index, section: Section, names: tuple[str, ...], bound: float | None, tolerance: float = TOLERANCE
+    index: Index,
+    section: Section,
+    names: tuple[str, ...],
+    bound: float | None,
+    tolerance: float = TOLERANCE,
+    seconds: float = math.inf,
 ) -> LevelSet:
-    """Map an index on ever finer grids until area, mean and deviation stand still.
+    """Map an index on ever finer grids until area, mean and deviation stand still; see `LevelSet.settled`.
 
-    An area of 0 is what the finest grid saw: see `LevelSet.step`.
+    Where an area is within the tolerance of 0 on the finest grid, the part that a few nodes saw, or that climbing from
+    the best nodes finds between them, is mapped on grids of its own. An area of 0 is what all this saw: see
+    `LevelSet.step`.
 
     Args:
         index: of `index_of`.
         section: the plane.
         names: the robot's `pose_names`.
         bound: the index is to be at least this (at most, where smaller is better); None: in reach is enough.
-        tolerance: the area may move by this part of the plane's, mean and deviation by this part of the larger one.
+        tolerance: the area may move by this part of the map's, mean and deviation by this part of the larger one.
+        seconds: after so many the finest map that is complete is the last.
 
     Raises:
         InvalidRegion, InvalidSection: see `Section.check`.
-        InvalidValue: a bound that is not finite, or a tolerance not above 0.
-        NotConverged: they still move on the finest grid.
+        InvalidValue: a bound that is not finite, or a tolerance or a time not above 0.
+        OutOfTime: not even the coarsest map was complete.
     """
-    if bound is not None and not math.isfinite(bound):
-        raise InvalidValue("bound", bound, "a finite number")
-    if not (math.isfinite(tolerance) and tolerance > 0.0):
-        raise InvalidValue("tolerance", tolerance, "a finite number > 0")
+    bound = None if bound is None else finite("bound", bound)
+    if math.isfinite(index.least):
+        bound = max(index.least, -math.inf if bound is None else bound)
+    tolerance, budget = positive("tolerance", tolerance), Budget(seconds)
     section.check(names)
-    whole = math.prod(high - low for low, high in (section.region.intervals[n] for n in section.axes))
-    count, before, moved = COARSEST, None, math.inf
+    found = _refined(index, section, names, bound, tolerance, budget, window_of(section))
+    while bound is not None and not budget.spent and found.figures.area <= tolerance * found.whole:
+        window = window_of_part(index, section, names, found.map, bound, budget)
+        if window is None:
+            break
+        found = _refined(index, section, names, bound, tolerance, budget, window)
+    return found
+
+
+def _refined(
+    index: Index,
+    section: Section,
+    names: tuple[str, ...],
+    bound: float | None,
+    tolerance: float,
+    budget: Budget,
+    window: Window,
+) -> LevelSet:
+    """`level_set` within a window, whose area is the one that counts."""
+    whole = math.prod(high - low for low, high in window)
+    none = Integrals(math.nan, math.nan, math.nan)
+    count, found = COARSEST, None
     while count <= FINEST:
-        chart = map_of(index, section, names, (count, count))
+        try:
+            chart = map_of(index, section, names, (count, count), window=window, seconds=max(budget.left, 1e-9))
+        except OutOfTime:
+            if found is None:
+                raise
+            break
         now = integrals(chart, bound)
-        if before is not None:
-            moved = now.moved(before, whole)
-            if moved <= tolerance and (now.area > 0.0 or count == FINEST):
-                return LevelSet(chart, bound, now, before)
-        before, count = now, 2 * count - 1
-    hint = "ask for less, or map `reach` where the edge of reach is the boundary"
-    raise NotConverged(f"area, mean or deviation of {index.name}", moved, tolerance, hint)
+        before, moved = (found.figures, now.moved(found.figures, whole)) if found else (none, math.inf)
+        found = LevelSet(chart, bound, now, before, moved, tolerance)
+        if found.settled and now.area > tolerance * whole:
+            break
+        count = 2 * count - 1
+    assert found is not None
+    return found
 
 
 def integrals(chart: Map, bound: float | None) -> Integrals:

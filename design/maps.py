@@ -6,6 +6,7 @@ not proved; for a proof see `certified`. Poses pass by in chunks, so memory is b
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
@@ -13,12 +14,16 @@ from itertools import product
 import numpy as np
 from scipy.ndimage import minimum_filter
 
+from design.budget import Budget
+from design.errors import OutOfTime
 from design.index import Index
 from design.search import descend
 from design.section import Section
+from kinematics.arguments import whole
 
 Array = np.ndarray
 REST = {0: 1, 1: 49, 2: 13, 3: 7, 4: 5}  # poses along each coordinate of the rest, by how many there are
+Window = tuple[tuple[float, float], tuple[float, float]]  # lower and upper bound of both axes
 _MINIMA = 3  # local minima that are followed downhill
 _ROUNDS = 22  # of descent: halvings end at a millionth of the grid's step
 _CHUNK = 1 << 18  # poses
@@ -63,7 +68,15 @@ class Map:
         return float(-value if self.smaller_is_better else value), self.poses[row, column]
 
 
-def map_of(index: Index, section: Section, names: tuple[str, ...], counts: tuple[int, int]) -> Map:
+def map_of(
+    index: Index,
+    section: Section,
+    names: tuple[str, ...],
+    counts: tuple[int, int],
+    *,
+    window: Window | None = None,
+    seconds: float = math.inf,
+) -> Map:
     """Map an index.
 
     Args:
@@ -71,21 +84,40 @@ def map_of(index: Index, section: Section, names: tuple[str, ...], counts: tuple
         section: the plane.
         names: the robot's `pose_names`.
         counts: nodes along the two axes, 2 or more.
+        window: bounds of both axes, a part of the region's; these by default.
+        seconds: how long it may take.
 
     Raises:
         InvalidRegion, InvalidSection: see `Section.check`.
+        InvalidValue: a count below 2, or a time not above 0.
+        OutOfTime: it takes longer.
     """
     section.check(names)
-    first, second = (np.linspace(*section.region.intervals[n], c) for n, c in zip(section.axes, counts, strict=True))
+    first, second = (
+        np.linspace(low, high, whole("nodes of a map along an axis", count, 2))
+        for (low, high), count in zip(window or window_of(section), counts, strict=True)
+    )
     points = np.stack(np.meshgrid(first, second), axis=-1)
-    good, poses = worst_behind(index, section, names, points.reshape(-1, 2))
+    good, poses = worst_behind(index, section, names, points.reshape(-1, 2), Budget(seconds))
     values = np.where(np.isinf(good) & (good < 0), np.nan, index.sign * good).reshape(points.shape[:2])
     poses = poses.reshape(*points.shape[:2], len(names))
     return Map(section, index.name, index.smaller_is_better, first, second, values, poses, section.inset(points))
 
 
-def worst_behind(index: Index, section: Section, names: tuple[str, ...], points: Array) -> tuple[Array, Array]:
-    """The lowest goodness (k,) over all poses behind each point (k, 2), -inf out of reach, and its pose (k, n)."""
+def window_of(section: Section) -> Window:
+    """Of the whole plane."""
+    first, second = (section.region.intervals[name] for name in section.axes)
+    return first, second
+
+
+def worst_behind(
+    index: Index, section: Section, names: tuple[str, ...], points: Array, budget: Budget | None = None
+) -> tuple[Array, Array]:
+    """The lowest goodness (k,) over all poses behind each point (k, 2), -inf out of reach, and its pose (k, n).
+
+    Raises:
+        OutOfTime: the budget is used up before the last point.
+    """
     rest = len(section.rest(names))
     each = REST.get(rest, 3)
     unit = np.array(list(product(np.linspace(0.0, 1.0, each), repeat=rest)))
@@ -93,6 +125,8 @@ def worst_behind(index: Index, section: Section, names: tuple[str, ...], points:
     listed = section.listed()
     step = max(1, _CHUNK // (len(unit) * len(listed)))
     for first in range(0, len(points), step):
+        if budget is not None and budget.spent:
+            raise OutOfTime(f"map of {index.name}", budget.seconds, f"{first} of {len(points)} nodes")
         part = slice(first, first + step)
         found = [_worst(index, section, names, points[part], one, unit) for one in listed]
         values, where = (np.stack(column) for column in zip(*found, strict=True))

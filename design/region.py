@@ -18,7 +18,9 @@ from design.errors import InvalidRegion
 
 Array = np.ndarray
 Interval = float | tuple[float, float]
-_ROUNDING = 1e-12  # m or rad
+_ROUNDING = 1e-12  # relative to the largest number between the bounds
+_LARGEST = 1e100  # of a bound: squares of it must stay numbers
+_FEW = 4  # coordinates up to which three values of each are few poses
 CHUNK = 1 << 15  # poses: enough for all threads, and a chunk stays in the second cache
 
 
@@ -69,9 +71,13 @@ class Region(ABC):
     def outline(self) -> list[Array]:
         """Edges of the region's x, y, z part as polylines (k, 3), for drawing."""
 
+    @abstractmethod
     def contains(self, poses: Array, names: Sequence[str], slack: float = _ROUNDING) -> Array:
-        """(..., n) -> (...,) whether each pose is inside, or outside by no more than the slack [m or rad]."""
-        return self.room(poses, names) >= -slack
+        """(..., n) -> (...,) whether each pose is inside.
+
+        Args:
+            slack: a coordinate may be beyond a bound by this part of the larger of both bounds, without their signs.
+        """
 
     def check(self, names: Sequence[str]) -> None:
         """Check that the region speaks of exactly these coordinates.
@@ -124,7 +130,12 @@ class Region(ABC):
 
     def spread(self, names: Sequence[str]) -> Array:
         """(k, n) few distinct poses that reach every side of the region, corners and middle included."""
-        return np.unique(self.grid(names, (3,) * self.dimension), axis=0)
+        if self.dimension <= _FEW:
+            return np.unique(self.grid(names, (3,) * self.dimension), axis=0)
+        k = self.dimension  # corners, and the middle of each side and of the whole
+        sides = np.concatenate([np.full((1, k), 0.5), 0.5 + 0.5 * np.eye(k), 0.5 - 0.5 * np.eye(k)])
+        unit = np.concatenate([np.array(list(product((0.0, 1.0), repeat=k))), sides])
+        return np.unique(self.from_unit(unit, names), axis=0)
 
     def extent(self, names: Sequence[str]) -> Array:
         """(n,) widths of the coordinates' intervals."""
@@ -176,6 +187,12 @@ class Box(Region):
         low, high = np.array([self._intervals[name] for name in names]).T
         return np.minimum(poses - low, high - poses).min(axis=-1)
 
+    def contains(self, poses: Array, names: Sequence[str], slack: float = _ROUNDING) -> Array:
+        """Between all bounds."""
+        low, high = np.array([self._intervals[name] for name in names]).reshape(-1, 2).T
+        beyond = slack * np.maximum(np.abs(low), np.abs(high))
+        return ((poses >= low - beyond) & (poses <= high + beyond)).all(axis=-1)
+
     def narrowed(self, given: Mapping[str, Array]) -> dict[str, tuple[Array | float, Array | float]]:
         """The others' own bounds."""
         return {name: interval for name, interval in self._intervals.items() if name not in given}
@@ -200,8 +217,8 @@ class Cylinder(Region):
 
     def __init__(self, radius: float, **coordinates: Interval) -> None:
         self.radius = _number(radius)
-        if not self.radius > 0.0:
-            raise InvalidRegion("radius", radius, "a finite length > 0 m")
+        if not self.radius >= 1.0 / _LARGEST:
+            raise InvalidRegion("radius", radius, "a length > 0 m whose square is a number")
         for name in ("x", "y"):
             if name in coordinates:
                 raise InvalidRegion(name, coordinates[name], "only the radius for x and y")
@@ -244,6 +261,13 @@ class Cylinder(Region):
         rest = self._rest.room(poses[..., [names.index(name) for name in others]], others)
         return np.minimum(rest, self.radius - np.hypot(x, y))
 
+    def contains(self, poses: Array, names: Sequence[str], slack: float = _ROUNDING) -> Array:
+        """Within the circle and between the other bounds."""
+        x, y = poses[..., names.index("x")], poses[..., names.index("y")]
+        others = [name for name in names if name not in ("x", "y")]
+        rest = self._rest.contains(poses[..., [names.index(name) for name in others]], others, slack)
+        return rest & (np.hypot(x, y) <= self.radius * (1.0 + slack))
+
     def complete(self, given: Mapping[str, Array], unit: Array, names: Sequence[str]) -> Array:
         """Where neither x nor y is given, the first two columns are polar coordinates in the disc."""
         if "x" not in given and "y" not in given:
@@ -276,10 +300,11 @@ def _interval(name: str, value: object) -> tuple[float, float]:
     pair = tuple(value) if isinstance(value, list | tuple) else (value, value)
     low, high = (_number(v) for v in pair) if len(pair) == 2 else (math.nan, math.nan)
     if not low <= high:
-        raise InvalidRegion(name, value, "a finite number, or two with the lower first")
+        raise InvalidRegion(name, value, "a number whose square is one too, or two with the lower first")
     return low, high
 
 
 def _number(value: object) -> float:
-    """The value as a float; NaN where it is no finite number."""
-    return float(value) if isinstance(value, Real) and math.isfinite(value) else math.nan
+    """The value as a float; NaN where it is no number of a usual size."""
+    number = float(value) if isinstance(value, Real) and not isinstance(value, bool) else math.nan
+    return number if abs(number) <= _LARGEST else math.nan

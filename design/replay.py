@@ -9,9 +9,10 @@ from importlib.metadata import version
 
 import numpy as np
 
-from design.certificate import Certificate
+from design.certificate import EDITION, Certificate
 from design.errors import BrokenCertificate, OtherCertificate
 from design.lower_bounds import LowerBounds
+from design.refutation import Refuter
 from design.region import Region
 from design.symmetry import mirrors_of, one_side
 from design.tree import LEFT, OUTSIDE, halves, leaves, outside, root
@@ -41,15 +42,16 @@ def replay(
         How many boxes were bounded again; 1 for the pose of a refutation.
 
     Raises:
-        OtherCertificate: another mechanism, geometry, ranges, version, region, margin, FVI bounds, length, or a lower
-            bound.
+        OtherCertificate: another mechanism, geometry, joint range, working mode, version, edition, region, margin, FVI
+            bounds or length, or a lower bound.
         BrokenCertificate: its boxes do not cover the region, are not as many as it says, or one is not proved; its pose
             does not refute; or it decides nothing.
     """
     _same("mechanism", certificate.mechanism, type(robot).__name__)
     _same("geometry", certificate.digest, robot.geometry.digest)
-    _same("joint ranges", certificate.ranges, robot.ranges.digest)
+    _same("joint ranges or working mode", certificate.conditions, robot.conditions_digest)
     _same("version", certificate.version, version("linkwright"))
+    _same("edition", certificate.edition, EDITION)
     if region is not None:
         _same("region", repr(certificate.region), repr(region))
     if margin is not None:
@@ -103,6 +105,12 @@ def _replay_proof(certificate: Certificate, robot: Mechanism) -> int:
 
 
 def _replay_refutation(certificate: Certificate, robot: Mechanism, pose: Array) -> int:
-    if certificate.statement(robot).refutation(certificate.region, pose[None]) is None:
+    if pose.shape != (len(robot.pose_names),):
+        raise BrokenCertificate(f"its pose has {pose.size} numbers; expected {len(robot.pose_names)}")
+    certificate.region.check(robot.pose_names)
+    found = Refuter(certificate.statement(robot)).refutation(certificate.region, pose[None])
+    if found is None:
         raise BrokenCertificate("its pose does not refute the claim", pose)
+    if found.within_reach != certificate.within_reach:
+        raise BrokenCertificate(f"its pose is {'within' if found.within_reach else 'out of'} reach; it says otherwise")
     return 1

@@ -6,13 +6,16 @@ grid's. The answer is still a sample's, an upper bound of the true worst, and it
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from design.budget import Budget
 from design.region import Region, unit_grid
 from design.sweep import sweep
 from kinematics import FviBounds, Mechanism
+from kinematics.arguments import whole
 
 Array = np.ndarray
 DENSE = 1_000_000  # poses of a grid that is far denser than any that is solved on
@@ -25,12 +28,16 @@ class WorstPoses:
     Attributes:
         values: (k,) the margin; -inf where a limb cannot reach and the margin has no value.
         poses: (k, n).
-        sampled: how many poses the grid held.
+        sampled: how many poses of the grid were looked at.
+        complete: whether that was all of them; not where the time ran out.
+        typical: mean modulus of the margin over a few poses of the region, for its scale; NaN where it has none.
     """
 
     values: Array
     poses: Array
     sampled: int
+    complete: bool
+    typical: float
 
     @property
     def value(self) -> float:
@@ -58,6 +65,7 @@ def worst_poses(
     characteristic_length: float | None = None,
     about: int = DENSE,
     descents: int = 64,
+    seconds: float = math.inf,
 ) -> WorstPoses:
     """Local minima of a margin, from a grid of about that many poses and descents between them.
 
@@ -68,10 +76,16 @@ def worst_poses(
         bounds, characteristic_length: as in `Mechanism.margin`.
         about: size of the grid.
         descents: how many of the lowest grid poses are followed downhill.
+        seconds: the grid is left where it is after so many; see `WorstPoses.complete`.
+
+    Raises:
+        InvalidRegion, InvalidValue: the region or the margin is not the robot's, or a number means nothing.
     """
-    names = robot.pose_names
+    names, budget = robot.pose_names, Budget(seconds)
     region.check(names)
+    about, descents = whole("about", about, 1), whole("descents", descents, 1)
     counts = dense_counts(region.dimension, about)
+    few = robot.margin(margin, region.spread(names), bounds, characteristic_length)
 
     def value(unit: Array) -> Array:
         found = robot.margin(margin, region.from_unit(unit, names), bounds, characteristic_length)
@@ -79,14 +93,22 @@ def worst_poses(
 
     if region.dimension == 0:
         pose = region.from_unit(np.empty((1, 0)), names)
-        return WorstPoses(value(np.empty((1, 0))), pose, 1)
-    grid = sweep(value, unit_grid(counts), keep=4 * descents)
+        found = value(np.empty((1, 0)))
+        return WorstPoses(found, pose, 1, True, _typical(few))
+    grid = sweep(value, budget.during(unit_grid(counts)), keep=4 * descents)
     unit, values = descend(value, grid.at, 1.0 / (np.array(counts) - 1.0))
     order = np.argsort(values, kind="stable")
     unit, values = unit[order], values[order]
     poses = region.from_unit(unit, names)
-    distinct = _distinct(poses, region.extent(names) + 1e-12)
-    return WorstPoses(values[distinct], poses[distinct], grid.poses)
+    extent = region.extent(names)
+    distinct = _distinct(poses, np.where(extent > 0.0, extent, 1.0))
+    complete = grid.poses == math.prod(counts)
+    return WorstPoses(values[distinct], poses[distinct], grid.poses, complete, _typical(few))
+
+
+def _typical(values: Array) -> float:
+    finite = np.abs(values[np.isfinite(values)])
+    return float(finite.mean()) if len(finite) else math.nan
 
 
 def descend(value, unit: Array, step: Array, rounds: int = 40) -> tuple[Array, Array]:  # type: ignore[no-untyped-def]

@@ -12,6 +12,7 @@ from design.errors import InvalidSection
 from design.region import Region
 
 Array = np.ndarray
+_ROUNDING = 1e-12  # relative to the largest number between the bounds
 
 
 @dataclass(frozen=True)
@@ -60,8 +61,9 @@ class Section:
         low, high = self.region.intervals[name]
         if not len(values):
             raise InvalidSection(f"at {name}", "no value", "at least one")
+        slack = _ROUNDING * max(abs(low), abs(high))
         for value in values:
-            if not low - 1e-12 <= value <= high + 1e-12:
+            if not low - slack <= value <= high + slack:
                 raise InvalidSection(f"at {name}", f"{value:g}", f"a value in the region, {low:g} to {high:g}")
 
     def rest(self, names: Sequence[str]) -> list[str]:

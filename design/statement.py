@@ -6,12 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from design.region import Region
 from kinematics import FviBounds, Mechanism
+from kinematics.arguments import finite, positive
 from kinematics.errors import InvalidValue
 
 Array = np.ndarray
-_ROUNDING = 1e-12  # by how much plain arithmetic must miss the bound before it refutes, relative to 1 or the bound
 
 
 @dataclass(frozen=True)
@@ -38,10 +37,8 @@ class Statement:
         if self.margin not in self.robot.margins:
             known = ", ".join(self.robot.margins)
             raise InvalidValue(f"{type(self.robot).__name__} margin", self.margin, f"one of {known}")
-        if not np.isfinite(self.at_least):
-            raise InvalidValue(f"at_least of {self.margin}", self.at_least, "a finite number, in the margin's unit")
-        if not (np.isfinite(self.length) and self.length > 0.0):
-            raise InvalidValue("characteristic_length", self.length, "a finite length > 0 m")
+        finite(f"at_least of {self.margin}", self.at_least, "a finite number, in the margin's unit")
+        positive("characteristic_length", self.length, "a finite length > 0 m")
 
     @classmethod
     def of(
@@ -54,17 +51,9 @@ class Statement:
     ) -> Statement:
         """With the robot's own FVI bounds and length where none are given."""
         length = robot.characteristic_length if characteristic_length is None else characteristic_length
-        return cls(robot, margin, float(at_least), bounds or robot.fvi_bounds, float(length))
+        return cls(robot, margin, at_least, bounds or robot.fvi_bounds, length)
 
     def value(self, poses: Array) -> Array:
-        """(..., n) -> (...,) the margin in plain arithmetic."""
-        return self.robot.margin(self.margin, poses, self.bounds, self.length)
-
-    def refutation(self, region: Region, poses: Array) -> Array | None:
-        """The worst (n,) of the poses (k, n) in the region that miss the bound or have no margin; None: none does."""
-        poses = poses[region.contains(poses, self.robot.pose_names)]
-        if not len(poses):
-            return None
-        values = self.value(poses)
-        below = ~(values >= self.at_least - _ROUNDING * max(1.0, abs(self.at_least)))
-        return poses[int(np.where(below, np.nan_to_num(values, nan=-np.inf), np.inf).argmin())] if below.any() else None
+        """(..., n) -> (...,) the margin in plain arithmetic; NaN where a limb cannot reach, of `reach` itself too."""
+        values = self.robot.margin(self.margin, poses, self.bounds, self.length)
+        return np.where(self.robot.margin("reach", poses) >= 0.0, values, np.nan)

@@ -12,7 +12,7 @@ orthogonal, so lengths of rows, volumes, and lengths of the pseudo-inverse's col
 
 from __future__ import annotations
 
-from functools import cache
+from functools import lru_cache
 
 import casadi as ca
 import numpy as np
@@ -20,6 +20,7 @@ import numpy as np
 from design.normal_form import Form, NoForm, forms
 from design.region import Region
 from kinematics import Mechanism
+from kinematics.model import Model
 
 Array = np.ndarray
 Mirrors = tuple[tuple[str, ...], ...]
@@ -30,7 +31,7 @@ def mirrors_of(robot: Mechanism, region: Region, margin: str) -> Mirrors:
     """The robot's mirrors that keep the region and are shown to keep the margin; the first name of each is halved."""
     if margin not in _OF_JACOBIANS:
         return ()
-    kept = [names for names in robot.mirrors if _keeps(region, names) and _holds(type(robot), names)]
+    kept = [names for names in robot.mirrors if _keeps(region, names) and _holds(type(robot), robot.model(), names)]
     halved = [names[0] for names in kept]
     return tuple(names for names in kept if sum(name in halved for name in names) == 1)
 
@@ -49,10 +50,9 @@ def _keeps(region: Region, names: tuple[str, ...]) -> bool:
     return all(low == -high for low, high in intervals) and intervals[0][1] > 0.0
 
 
-@cache
-def _holds(robot: type[Mechanism], names: tuple[str, ...]) -> bool:
+@lru_cache(maxsize=64)
+def _holds(robot: type[Mechanism], model: Model, names: tuple[str, ...]) -> bool:
     """For every geometry, as this stands for symbols."""
-    model = robot.model()
     if not model.drives.is_eye() or len(robot.pose_names) != model.j_x_at_pose.shape[1]:
         return False
     signs = [-1 if name in names else 1 for name in robot.pose_names]

@@ -6,41 +6,23 @@ answer was worst, until a dense search with descents agrees with the NLP. Only s
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from design.budget import Budget
 from design.errors import SynthesisFailed
-from design.nlp import NlpSolution, Problem, solve
+from design.exchange import Candidate, Exchange, Progress, Round, worst_of
+from design.nlp import NlpSolution, Problem
 from design.region import Region
-from design.search import DENSE, WorstPoses, worst_poses
-from kinematics import Mechanism, UnreachablePose
+from design.search import DENSE, WorstPoses
+from design.starts import reaching_starts, require_possible_sums
+from kinematics import Mechanism
+from kinematics.arguments import positive, whole
 
 Array = np.ndarray
-_ATTEMPTS = 200  # geometries drawn for each wanted start
-
-
-@dataclass(frozen=True)
-class Round:
-    """One exchange: what the NLP promised on its poses and what the dense search found."""
-
-    poses: int
-    promised: float
-    found: float
-    shortfall: float  # how far the worst requirement is below its bound; <= 0 when all hold
-    iterations: int
-    seconds: float
-
-    def settled(self, tolerance: float) -> bool:
-        """Whether the dense search keeps the promise and every requirement holds."""
-        return self.found >= self.promised * (1.0 - tolerance) and self.shortfall <= 0.0
-
-    def __str__(self) -> str:
-        return (
-            f"{self.poses} poses, promised {self.promised:.6f}, dense search found {self.found:.6f}, "
-            f"requirements short by {max(self.shortfall, 0.0):.1e}"
-        )
+SECONDS = 600.0
 
 
 @dataclass(frozen=True)
@@ -63,9 +45,6 @@ class Synthesis:
     sampled: int
 
 
-Progress = Callable[[str], None]
-
-
 def synthesise(
     problem: Problem,
     region: Region,
@@ -75,6 +54,7 @@ def synthesise(
     about: int = DENSE,
     max_rounds: int = 20,
     tolerance: float = 1e-5,
+    seconds: float = SECONDS,
     progress: Progress = lambda _: None,
 ) -> Synthesis:
     """Maximise the worst objective over the region.
@@ -85,128 +65,77 @@ def synthesise(
         seed, starts: the prototype and `starts - 1` random geometries start the first NLP; the best answer goes on.
         about: size of the dense grids.
         max_rounds: exchanges before giving up.
-        tolerance: relative difference between the NLP's promise and the dense search at which they agree.
+        tolerance: difference between the NLP's promise and the dense search at which they agree, relative to the
+            objective's size.
+        seconds: wall-clock time before giving up.
         progress: told a line of text at each step.
 
     Raises:
-        SynthesisFailed: no start converged, the exchange did not settle, or a requirement fails on the dense sample.
+        SynthesisFailed: no start converged, the exchange did not settle, or the time was used up; with the best
+            geometry seen.
+        InvalidRegion, InvalidValue: the region is not the robot's, or a number means nothing.
     """
-    names = problem.robot.pose_names
-    region.check(names)
-    before = worst_of(problem, problem.robot, region, about)
-    poses = region.spread(names)
-    firsts = _reaching_starts(problem, poses, seed, starts)
-    solution = _best(problem, poses, firsts, progress)
+    tolerance, starts = positive("tolerance", tolerance), whole("starts", starts, 1)
+    rounds = whole("max_rounds", max_rounds, 1)
+    exchange = Exchange(problem, region, about, Budget(seconds), progress)
+    region.check(problem.robot.pose_names)
+    require_possible_sums(problem)
+    before = worst_of(problem, problem.robot, region, about, exchange.budget.left)
+    if problem.allows(problem.robot):
+        exchange.note(problem.robot, before)
+    poses = region.spread(problem.robot.pose_names)
+    firsts = reaching_starts(problem, poses, seed, starts)
+    return _exchanged(exchange, before, poses, firsts, rounds, tolerance)
+
+
+def _exchanged(
+    exchange: Exchange,
+    before: dict[str, WorstPoses],
+    poses: Array,
+    firsts: list[Array],
+    most_rounds: int,
+    tolerance: float,
+) -> Synthesis:
+    """All rounds, from the poses (p, n) of the first one."""
+    problem = exchange.problem
+    sizes = problem.sizes(problem.robot_with(firsts[0]), poses)
+    solution = exchange.best_of(poses, firsts, sizes)
     rounds: list[Round] = []
-    while len(rounds) < max_rounds:
-        robot = _robot(problem, solution.values)
-        after = worst_of(problem, robot, region, about)
-        rounds.append(_round(problem, solution, after, len(poses)))
-        progress(f"round {len(rounds)}: {rounds[-1]}")
-        if rounds[-1].settled(tolerance):
+    while len(rounds) < most_rounds:
+        robot = exchange.robot_of(solution)
+        after = worst_of(problem, robot, exchange.region, exchange.about, exchange.budget.left)
+        found = exchange.note(robot, after)
+        rounds.append(_round(solution, found, len(poses)))
+        exchange.progress(f"round {len(rounds)}: {rounds[-1]}")
+        slack = tolerance * abs(solution.objective)
+        settled = found.objective >= solution.objective - slack and found.shortfall <= 0.0
+        better = exchange.better_than(found, slack)
+        if settled and better is None and all(worst.complete for worst in after.values()):
             return Synthesis(robot, before, after, rounds, solution.status, after[problem.objective].sampled)
-        poses = np.concatenate([poses, *(_offenders(problem, solution, *item) for item in after.items())])
-        solution = _again(problem, poses, [solution.values, *firsts])
-    raise SynthesisFailed(f"the exchange did not settle; its last round: {rounds[-1]}", solution.status)
+        exchange.require_time(f"after {len(rounds)} rounds, the last one: {rounds[-1]}", solution)
+        poses = np.concatenate([poses, *(_offenders(problem, solution, sizes, *item) for item in after.items())])
+        nearest = better.robot.geometry.vector()[problem.places()] if settled and better else solution.values
+        solution = exchange.first_of(poses, [nearest, *firsts], sizes)
+    raise SynthesisFailed(f"the exchange did not settle; its last round: {rounds[-1]}", solution.status, exchange.seen)
 
 
-def _again(problem: Problem, poses: Array, firsts: list[Array]) -> NlpSolution:
-    """The first converged solution; the last optimum may not reach the poses that were added, then the others start."""
-    for first in firsts:
-        solution = solve(problem, poses, first)
-        if solution.converged:
-            return solution
-    raise _not_converged(f"each of the NLP's {len(firsts)} starts over {len(poses)} poses", solution)
-
-
-def _best(problem: Problem, poses: Array, firsts: list[Array], progress: Progress) -> NlpSolution:
-    """The best converged solution of all starts."""
-    best: NlpSolution | None = None
-    for k, first in enumerate(firsts, start=1):
-        solution = solve(problem, poses, first)
-        progress(f"start {k} of {len(firsts)}: {solution.objective:.5f} ({solution.status})")
-        if solution.converged and (best is None or solution.objective > best.objective):
-            best = solution
-    if best is None:
-        raise _not_converged(f"each of the NLP's {len(firsts)} starts over {len(poses)} poses", solution)
-    return best
-
-
-def _not_converged(what: str, solution: NlpSolution) -> SynthesisFailed:
-    short = "; ".join(f"{name} falls short by {by:.3g}" for name, by in solution.violations.items())
-    return SynthesisFailed(f"{what} did not converge{': ' + short if short else ''}", solution.status)
-
-
-def _reaching_starts(problem: Problem, poses: Array, seed: int, count: int) -> list[Array]:
-    """Variables of geometries that reach every pose, the prototype's first; the others would start IPOPT on NaN.
-
-    Raises:
-        SynthesisFailed: none of many reaches them all; the one that comes nearest is described.
-    """
-    low, high = problem.bounds()
-    rng = np.random.default_rng(seed)
-    found: list[Array] = []
-    nearest, shortest = problem.robot, -np.inf
-    prototype = np.clip(problem.robot.geometry.vector()[problem.places()], low, high)
-    for attempt in range(_ATTEMPTS * count):
-        values = prototype if attempt == 0 else low + (high - low) * rng.random(len(low))
-        robot = _robot(problem, values)
-        margin = float(np.nan_to_num(robot.margin("reach", poses), nan=-np.inf).min())
-        if margin > 0.0:
-            found.append(values)
-        elif margin > shortest:
-            nearest, shortest = robot, margin
-        if len(found) == count:
-            break
-    if not found:
-        try:
-            nearest.require_reachable(poses)
-        except UnreachablePose as error:
-            raise SynthesisFailed(
-                f"none of {_ATTEMPTS * count} geometries within the bounds reaches the region; the nearest: {error}",
-                "not started",
-            ) from error
-    return found
-
-
-def _robot(problem: Problem, values: Array) -> Mechanism:
-    """The mechanism with these variables, rounded to the micrometre so that a file holds exactly what was checked."""
-    low, high = problem.bounds()
-    vector = problem.geometry(np.clip(np.round(values, 6), low, high))
-    return type(problem.robot)(problem.robot.Geometry.from_vector(vector), problem.robot.inertia, problem.robot.ranges)
-
-
-def worst_of(problem: Problem, robot: Mechanism, region: Region, about: int = DENSE) -> dict[str, WorstPoses]:
-    """Worst poses of the objective and of each requirement, by margin, from a grid of about that many poses."""
-    margins = dict.fromkeys([problem.objective, *(r.margin for r in problem.requirements)])
-    return {
-        margin: worst_poses(
-            robot,
-            region,
-            margin,
-            bounds=problem.fvi_bounds,
-            characteristic_length=problem.characteristic_length,
-            about=about,
-        )
-        for margin in margins
-    }
-
-
-def _round(problem: Problem, solution: NlpSolution, after: dict[str, WorstPoses], poses: int) -> Round:
-    shortfalls = [r.at_least - after[r.margin].value for r in problem.requirements]
+def _round(solution: NlpSolution, found: Candidate, poses: int) -> Round:
     return Round(
         poses=poses,
         promised=solution.objective,
-        found=after[problem.objective].value,
-        shortfall=max(shortfalls, default=-np.inf),
+        found=found.objective,
+        shortfall=found.shortfall,
         iterations=solution.iterations,
         seconds=solution.seconds,
     )
 
 
-def _offenders(problem: Problem, solution: NlpSolution, margin: str, worst: WorstPoses) -> Array:
+def _offenders(
+    problem: Problem, solution: NlpSolution, sizes: Mapping[str, float], margin: str, worst: WorstPoses
+) -> Array:
     """(k, n) poses at which the last answer does worse than it promised."""
-    floors = [r.at_least + problem.spare for r in problem.requirements if r.margin == margin]
+    spare = problem.spare * sizes[margin]
+    floors = [r.at_least + spare for r in problem.requirements if r.margin == margin]
     if margin == problem.objective:
         floors.append(solution.objective)
     return worst.poses[worst.values < max(floors)]

@@ -16,6 +16,8 @@ from design.region import Cylinder, Region
 Array = np.ndarray
 PROVED, OUTSIDE, LEFT = -1, -2, -3  # leaves; a code from 0 on is the coordinate that is cut
 BATCH = 1 << 16
+MOST_NODES = 1 << 24  # of a tree: some hundred megabytes while it is walked
+_MOST_LEVELS = 2200  # for each coordinate: so many halvings leave no two doubles between its bounds
 
 
 def root(region: Region, names: tuple[str, ...]) -> tuple[Array, Array]:
@@ -81,19 +83,51 @@ class Tree:
 def leaves(codes: Array, low: Array, high: Array) -> Iterator[tuple[Array, Array, Array]]:
     """Codes (k,) of leaves and their bounds (k, n) twice, in batches, from the codes by level and the root's bounds.
 
+    Depth first, so that no more than a batch of boxes a level is in memory, however many a level has.
+
     Raises:
         BrokenCertificate: the codes are not one whole tree over the root's coordinates.
     """
-    start = 0
-    while len(low):
+    first = _first_halves(codes, low.shape[1])
+    stack = [(0, low, high)]
+    while stack:
+        start, low, high = stack.pop()
+        if len(low) > BATCH:
+            stack.append((start + BATCH, low[BATCH:], high[BATCH:]))
+            low, high = low[:BATCH], high[:BATCH]
         code = codes[start : start + len(low)]
-        start += len(low)
-        if len(code) < len(low) or (code >= low.shape[1]).any() or (code < LEFT).any():
-            raise BrokenCertificate("its list of boxes does not cover the region")
         leaf = code < 0
-        for first in range(0, int(leaf.sum()), BATCH):
-            rows = np.flatnonzero(leaf)[first : first + BATCH]
-            yield code[rows], low[rows], high[rows]
-        low, high = halves(low[~leaf], high[~leaf], code[~leaf].astype(np.int64))
-    if start != len(codes):
+        if leaf.any():
+            yield code[leaf], low[leaf], high[leaf]
+        if not leaf.all():
+            stack.append((int(first[start]), *halves(low[~leaf], high[~leaf], code[~leaf].astype(np.int64))))
+
+
+def _first_halves(codes: Array, coordinates: int) -> Array:
+    """(nodes,) where the halves of each node, or of the next one that is cut, start: one after every node before them.
+
+    Raises:
+        BrokenCertificate: as in `leaves`.
+    """
+    if len(codes) > MOST_NODES:
+        raise BrokenCertificate(f"its list of boxes has {len(codes)} entries, more than {MOST_NODES}")
+    if (codes >= coordinates).any() or (codes < LEFT).any():
+        raise BrokenCertificate("its list of boxes has a code of no meaning")
+    cut = codes >= 0
+    ends = 1 + 2 * np.cumsum(cut, dtype=np.int32)  # of the list, as far as the nodes up to each one tell
+    if not len(codes) or ends[-1] > len(codes) or (ends <= np.arange(1, len(codes) + 1))[:-1].any():
+        raise BrokenCertificate("its list of boxes does not cover the region")
+    if ends[-1] < len(codes):
         raise BrokenCertificate("its list of boxes goes on beyond the region")
+    ends[1:], ends[0] = ends[:-1].copy(), 1  # the halves before a node's own
+    _require_few_levels(ends, _MOST_LEVELS * coordinates)
+    return ends
+
+
+def _require_few_levels(first: Array, most: int) -> None:
+    """A chain of a million boxes would be walked box by box."""
+    level, count = 0, 0
+    while level < len(first) - 1 and (below := int(first[level])) > level:
+        level, count = below, count + 1
+        if count > most:
+            raise BrokenCertificate(f"its boxes are cut more than {most} times")

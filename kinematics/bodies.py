@@ -62,7 +62,7 @@ class Particle(NamedTuple):
     """A mass [kg] at a point (3,) [m] of a link."""
 
     link: str
-    mass: float
+    mass: float | ca.SX
     point: ca.SX
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from types import SimpleNamespace
-from typing import ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import casadi as ca
 import numpy as np
@@ -16,6 +16,9 @@ from kinematics.bodies import Bodies, InertiaRecord
 from kinematics.geometry import GeometryRecord
 from kinematics.indices import FviBounds
 from kinematics.ranges import JointRanges, PassiveJoint
+
+if TYPE_CHECKING:
+    from kinematics.working_mode import Mode
 
 Array = np.ndarray
 
@@ -31,7 +34,6 @@ class Definition(ABC):
     joint_units: ClassVar[tuple[str, ...]]  # rad or m
     rotations: ClassVar[tuple[int, ...]]  # which pose coordinates are angles
     counts_turns: ClassVar[bool] = False  # whether an angle a turn on is another pose, as on a screw
-    home: ClassVar[tuple[float, ...]]  # a pose well inside the workspace
     fvi_bounds: ClassVar[FviBounds]
     mirrors: ClassVar[tuple[tuple[str, ...], ...]] = ()  # coordinates whose signs change together: a mirror image
     margins: ClassVar[tuple[str, ...]] = ("reach", "joint_travel", "fvi", "J_q", "det_J_q", "det_J_x")
@@ -43,13 +45,28 @@ class Definition(ABC):
 
     @staticmethod
     @abstractmethod
-    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(m,) joints of the working mode, NaN where a limb cannot reach."""
+    def default_home(geometry: Any) -> tuple[float, ...]:
+        """(n,) a pose about in the middle of the workspace of a geometry of any size."""
+
+    @staticmethod
+    @abstractmethod
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace, mode: Mode) -> ca.SX:
+        """(m,) joints of a working mode, NaN where a limb cannot reach."""
+
+    @classmethod
+    def usual_branches(cls, home: Array, geometry: Any) -> tuple[int, ...]:  # noqa: ARG003
+        """(m,) the branch of each limb's inverse, +1 or -1, that is usual around a home (n,)."""
+        return (1,) * len(cls.joint_names)
 
     @staticmethod
     @abstractmethod
     def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """How far each limb is from not reaching [m], one row a limb; negative where it cannot."""
+
+    @classmethod
+    def limb_roots(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """Numbers that are NaN where a limb cannot reach: the inverse model's roots where they are at hand."""
+        return ca.sqrt(cls.reach(pose, g))
 
     @staticmethod
     @abstractmethod
@@ -60,7 +77,7 @@ class Definition(ABC):
         """
 
     @abstractmethod
-    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """The masses that move; `payload` [kg] sits at the tool."""
 
     @staticmethod
@@ -82,7 +99,11 @@ class Definition(ABC):
         return ca.SX.eye(len(cls.joint_names))
 
     @staticmethod
-    def joint_cosines_and_sines(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX] | None:  # noqa: ARG004
+    def joint_cosines_and_sines(
+        pose: ca.SX,  # noqa: ARG004
+        g: SimpleNamespace,  # noqa: ARG004
+        mode: Mode,  # noqa: ARG004
+    ) -> tuple[ca.SX, ca.SX] | None:
         """(m,) cosines and (m,) sines of the joints at a pose, where the joints are revolute."""
         return None
 
@@ -116,5 +137,10 @@ class Definition(ABC):
         """(m,) -> (k, n), every real pose with these joints."""
 
     @abstractmethod
-    def forward(self, joints: Array) -> Array:
-        """(..., m) joints -> (..., n) pose in the working assembly mode; a NaN row where no pose has these joints."""
+    def working_forward(self, joints: Array) -> Array:
+        """(..., m) joints -> (..., n) pose in the assembly mode of home; a NaN row where no pose has these joints."""
+
+    @staticmethod
+    def moved(pose: Array, twist: Array) -> Array:
+        """(k, n) poses after small displacements (k, n); not a sum where the pose holds Euler angles."""
+        return pose + twist

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from types import SimpleNamespace
-from typing import ClassVar
 
 import casadi as ca
 import numpy as np
@@ -14,11 +14,24 @@ from kinematics.bodies import Bodies, Particle
 from kinematics.geometry import GeometryRecord, angle, length
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
-from kinematics.mechanism import Array, Build
+from kinematics.mechanism import Array
 from kinematics.model import Model
-from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, central_limbs, columns, radial_directions
+from kinematics.programs import Build
+from kinematics.rotary_limbs import (
+    ArmInertia,
+    ArmRanges,
+    Limbs,
+    RotaryLimbs,
+    central_limbs,
+    columns,
+    height_in_reach,
+    radial_directions,
+)
+from kinematics.rounding import not_below_zero
 
 _DEG = math.pi / 180.0
+_SAME = 1e-6  # of a rod: rounding parts the two poses of a double root by no more
+_CLOSED = 1e-9  # of the robot's size: a pose that misses its rods by more is none
 
 
 @dataclass(frozen=True)
@@ -53,7 +66,7 @@ class DeltaInertia(ArmInertia):
 
 
 class Delta(RotaryLimbs):
-    """Pose [x, y, z] of the plate's centre, joints q1..q3 measured from e_z outward; elbows out."""
+    """Pose [x, y, z] of the plate's centre, joints q1..q3 measured from e_z outward; elbows out, usually."""
 
     Geometry = DeltaGeometry
     Inertia = DeltaInertia
@@ -64,7 +77,6 @@ class Delta(RotaryLimbs):
     joint_names = ("q1", "q2", "q3")
     joint_units = ("rad",) * 3
     rotations = ()
-    home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.75)
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
     margins = (*RotaryLimbs.margins, "passive_joint")
 
@@ -72,6 +84,12 @@ class Delta(RotaryLimbs):
     def characteristic_length(self) -> float:
         """1 m, and without effect: a translation has no rotation to be made a length."""
         return 1.0
+
+    @staticmethod
+    def default_home(geometry: DeltaGeometry) -> tuple[float, ...]:
+        """On the axis below the drives, in the middle of the reach."""
+        g = geometry
+        return 0.0, 0.0, -height_in_reach(g.base_radius, g.platform_radius, g.arm_length, g.rod_length)
 
     @staticmethod
     def limbs(g: SimpleNamespace) -> Limbs:
@@ -88,7 +106,7 @@ class Delta(RotaryLimbs):
         """L l for each J_q,i; l^3 for det J_x."""
         return ca.repmat(g.arm_length * g.rod_length, 3, 1), g.rod_length**3
 
-    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, rods, plate and payload."""
         bodies = self.limb_bodies(pose, joints, g, self.inertia.rod_mass, ["plate"] * 3)
         bodies.particles.append(Particle("plate", self.inertia.plate_mass + payload, pose))
@@ -102,26 +120,23 @@ class Delta(RotaryLimbs):
     # The forward model: three spheres of radius l, of 2nd degree (8.6.4.1).
 
     def _both(self, joints: Array) -> Array:
-        """(..., 3) -> (2, ..., 3), the plate below the elbows' plane and above it; NaN where there is none."""
+        """(..., 3) -> (2, ..., 3), the plate on either side of the elbows' plane; NaN where there is none."""
+        both: Array = np.stack(evaluate(self.program(_spheres), joints))
+        with np.errstate(invalid="ignore"):  # with the three centres all but on one line, rounding is all that is left
+            closed = (np.abs(self.closure_gap(both, np.stack([joints, joints]))) <= _CLOSED).all(axis=-1)
+        return np.where(closed[..., None], both, np.nan)
 
-        def build(model: Model) -> Build:
-            centres = self.limbs(model.g).elbows(model.joints) - self.platform_points(ca.SX(3, 1), model.g)
-            second, third = centres[:, 1] - centres[:, 0], centres[:, 2] - centres[:, 0]
-            normal = ca.cross(second, third)
-            square = ca.sumsqr(normal)
-            foot = ca.cross(ca.sumsqr(second) * third - ca.sumsqr(third) * second, normal) / (2 * square)
-            height = ca.sqrt((model.g.rod_length**2 - ca.sumsqr(foot)) / square) * normal
-            return [model.joints], [centres[:, 0] + foot - height, centres[:, 0] + foot + height]
+    @cached_property
+    def _side(self) -> int:
+        """Which of `_both` home is."""
+        away = np.linalg.norm(self._both(self.inverse(self.home)) - self.home, axis=-1)
+        if np.isfinite(away).all():
+            return int(away.argmin())
+        return 0 if _triangle(np.array(self.geometry.azimuths)) > 0.0 else 1  # below, the limbs counted either way
 
-        below, above = evaluate(self.program("spheres", build), joints)
-        both: Array = np.stack([below, above])
-        if _triangle(np.array(self.geometry.azimuths)) < 0.0:  # limbs counted clockwise
-            both = both[::-1]
-        return np.where(np.isfinite(both).all(axis=-1, keepdims=True), both, np.nan)
-
-    def forward(self, joints: Array) -> Array:
-        """(..., 3) -> (..., 3): below the plane of the rods' upper ends (moved inward by r), as at home."""
-        return self._both(self._joints(joints))[0]
+    def working_forward(self, joints: Array) -> Array:
+        """(..., 3) -> (..., 3): on the side of the plane of the rods' upper ends (moved inward by r) where home is."""
+        return self._both(self._joints(joints))[self._side]
 
     def assembly_modes(self, joints: Array) -> Array:
         """(3,) -> (k, 3), every real pose with these joints, none or two (one where they meet); the working one first.
@@ -129,9 +144,22 @@ class Delta(RotaryLimbs):
         None where the spheres' centres lie on one line, as there is no isolated pose then.
         """
         joints = self._one(joints)
-        both = self._both(joints)
+        both = self._both(joints)[[self._side, 1 - self._side]]
         both = both[np.isfinite(both).all(axis=-1)]
-        return both[:1] if len(both) and np.array_equal(both[0], both[1]) else both
+        meet = len(both) and np.abs(both[0] - both[1]).max() <= _SAME * self.geometry.rod_length
+        return both[:1] if meet else both
+
+
+def _spheres(robot: Delta, model: Model) -> Build:
+    """The two points that are a rod from each elbow, all moved inward by r."""
+    centres = robot.limbs(model.g).elbows(model.joints) - robot.platform_points(ca.SX(3, 1), model.g)
+    second, third = centres[:, 1] - centres[:, 0], centres[:, 2] - centres[:, 0]
+    normal = ca.cross(second, third)
+    square = ca.sumsqr(normal)
+    foot = ca.cross(ca.sumsqr(second) * third - ca.sumsqr(third) * second, normal) / (2 * square)
+    rod = model.g.rod_length**2
+    height = ca.sqrt(not_below_zero(rod - ca.sumsqr(foot), rod) / square) * normal
+    return [model.joints], [centres[:, 0] + foot - height, centres[:, 0] + foot + height]
 
 
 def _triangle(azimuths: Array) -> float:

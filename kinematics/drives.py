@@ -6,23 +6,27 @@ import casadi as ca
 
 from kinematics.interpreter import evaluate
 from kinematics.linear import adjugate
-from kinematics.mechanism import Array, Build, Mechanism
+from kinematics.mechanism import Array, Mechanism
 from kinematics.model import Model
+from kinematics.programs import Build
 from kinematics.shapes import checked
 
 
 def to_actuators(robot: Mechanism, joints: Array) -> Array:
     """(..., m) joints -> (..., m) actuators C joints, in the order of `robot.actuator_names`."""
-    program = robot.program("to_actuators", lambda model: ([model.joints], [model.drives @ model.joints]))
-    return evaluate(program, checked(joints, "joints", robot.joint_names))[0]
+    return evaluate(robot.program(_actuators), checked(joints, "joints", robot.joint_names))[0]
 
 
 def from_actuators(robot: Mechanism, actuators: Array) -> Array:
     """(..., m) actuators -> (..., m) joints C^-1 actuators."""
+    return evaluate(robot.program(_joints), checked(actuators, "actuators", robot.actuator_names))[0]
 
-    def build(model: Model) -> Build:
-        given = ca.SX.sym("actuators", model.drives.shape[0])
-        inverse, det = adjugate(model.drives)
-        return [given], [inverse @ given / det]
 
-    return evaluate(robot.program("from_actuators", build), checked(actuators, "actuators", robot.actuator_names))[0]
+def _actuators(_: Mechanism, model: Model) -> Build:
+    return [model.joints], [model.drives @ model.joints]
+
+
+def _joints(_: Mechanism, model: Model) -> Build:
+    given = ca.SX.sym("actuators", model.drives.shape[0])
+    inverse, det = adjugate(model.drives)
+    return [given], [inverse @ given / det]

@@ -21,9 +21,10 @@ from kinematics.drive_train import REST
 from kinematics.errors import InvalidValue
 from kinematics.interpreter import evaluate
 from kinematics.linear import adjugate
-from kinematics.mechanism import Array, Build, Mechanism
+from kinematics.mechanism import Array, Mechanism
 from kinematics.model import Model
 from kinematics.motion import derivatives_along
+from kinematics.programs import Build
 from kinematics.shapes import checked
 from kinematics.torque_sharing import least_peak
 
@@ -58,8 +59,10 @@ def inverse_dynamics(
     given = [checked(v, name, robot.pose_names) for name, v in _named(pose, velocity, acceleration)]
     if sharing not in get_args(Sharing):
         raise InvalidValue("sharing", sharing, f"one of {', '.join(get_args(Sharing))}")
-    program = robot.program(("inverse_dynamics", payload), lambda model: _build(robot, model, payload))
-    torque = evaluate(program, *np.broadcast_arrays(*given))[0]
+    require_payload(payload)
+    given = list(np.broadcast_arrays(*given))
+    mass = np.full((*given[0].shape[:-1], 1), payload)
+    torque = evaluate(robot.program(_inverse_dynamics), *given, mass)[0]
     if sharing == "least_norm" or len(robot.joint_names) == len(robot.pose_names):
         return torque
     limits = np.ones(torque.shape[-1]) if torque_limits is None else np.asarray(torque_limits, dtype=float)
@@ -70,14 +73,15 @@ def _named(pose: Array, velocity: Array, acceleration: Array) -> list[tuple[str,
     return [("pose", pose), ("velocity", velocity), ("acceleration", acceleration)]
 
 
-def _build(robot: Mechanism, model: Model, payload: float) -> Build:
+def _inverse_dynamics(robot: Mechanism, model: Model) -> Build:
     velocity, acceleration = (ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration"))
+    payload = ca.SX.sym("payload")
     _, speed = derivatives_along(model.drives @ model.inverse, model.pose, [velocity])
     torque = torques(robot, payload, velocity, acceleration) + friction(robot, speed)
-    return [model.pose, velocity, acceleration], [torque]
+    return [model.pose, velocity, acceleration, payload], [torque]
 
 
-def torques(robot: Mechanism, payload: float, velocity: ca.SX, acceleration: ca.SX) -> ca.SX:
+def torques(robot: Mechanism, payload: float | ca.SX, velocity: ca.SX, acceleration: ca.SX) -> ca.SX:
     """(m,) of `inverse_dynamics` with the least norm and without friction, in the model's `pose` and `geometry`."""
     model, rates = robot.model(), [velocity, acceleration]
     transposed, det = adjugate(model.drives.T)  # actuators and joints do the same work
@@ -93,14 +97,14 @@ def friction(robot: Mechanism, speed: ca.SX) -> ca.SX:
     return coulomb * ca.sign(speed) * (ca.fabs(speed) > REST) + viscous * speed
 
 
-def moving_bodies(robot: Mechanism, model: Model, payload: float) -> Bodies:
-    """The mechanism's bodies with the motors behind their gears.
-
-    Raises:
-        InvalidValue: the payload is not a mass.
-    """
+def require_payload(payload: float) -> None:
+    """Raise InvalidValue where a payload is not a mass."""
     if not (math.isfinite(payload) and payload >= 0.0):
         raise InvalidValue("payload", payload, "a finite mass >= 0 kg")
+
+
+def moving_bodies(robot: Mechanism, model: Model, payload: float | ca.SX) -> Bodies:
+    """The mechanism's bodies with the motors behind their gears; the payload is a mass [kg] or its symbol."""
     bodies = robot.bodies(model.pose, model.joints, model.g, payload)
     count = len(robot.joint_names)
     ratio, motor = (robot.inertia.drive_train.of_actuators(f, count) for f in ("gear_ratio", "motor_inertia"))
@@ -109,7 +113,9 @@ def moving_bodies(robot: Mechanism, model: Model, payload: float) -> Bodies:
     return bodies
 
 
-def _torques(robot: Mechanism, model: Model, payload: float, rates: list[ca.SX], joint_motion: list[ca.SX]) -> ca.SX:
+def _torques(
+    robot: Mechanism, model: Model, payload: float | ca.SX, rates: list[ca.SX], joint_motion: list[ca.SX]
+) -> ca.SX:
     """(m,) of the joints, without friction."""
     m = model.joints.shape[0]
     joint_rates = [ca.SX.sym(name, m) for name in ("joint_velocity", "joint_acceleration")]

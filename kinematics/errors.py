@@ -3,6 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
+
+
+def plain(value: Any) -> Any:
+    """The same value for a message: numbers and arrays of numpy as Python's own, in tuples and lists too."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if type(value) in (list, tuple):
+        return type(value)(map(plain, value))
+    return value
 
 
 class LinkwrightError(Exception):
@@ -19,7 +29,7 @@ class InvalidGeometry(LinkwrightError):
 
     def __init__(self, mechanism: str, field: str, found: object, expected: str) -> None:
         self.mechanism, self.field, self.found, self.expected = mechanism, field, found, expected
-        super().__init__(f"{mechanism} geometry, {field}: found {found}; expected {expected}")
+        super().__init__(f"{mechanism} geometry, {field}: found {plain(found)}; expected {expected}")
 
 
 class InvalidShape(LinkwrightError):
@@ -47,4 +57,4 @@ class InvalidValue(LinkwrightError):
 
     def __init__(self, what: str, found: object, expected: str) -> None:
         self.what, self.found, self.expected = what, found, expected
-        super().__init__(f"{what}: found {found}; expected {expected}")
+        super().__init__(f"{what}: found {plain(found)}; expected {expected}")

@@ -120,6 +120,12 @@ class GeometryRecord:
         return {f.name: f.metadata["doc"] for f in fields(cls)}
 
     @property
+    def size(self) -> float:
+        """The largest of its lengths [m]: what makes a distance large or small for this robot."""
+        lengths = [np.abs(getattr(self, f.name)).max() for f in fields(self) if f.metadata["dimension"] == "length"]
+        return float(max(lengths))
+
+    @property
     def digest(self) -> str:
         """SHA-256 of the numbers, to tell which geometry a file was made for."""
         return hashlib.sha256(json.dumps(self.as_dict(), sort_keys=True).encode()).hexdigest()

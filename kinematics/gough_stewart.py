@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from types import SimpleNamespace
-from typing import ClassVar
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -19,9 +19,11 @@ from kinematics.geometry import TURN
 from kinematics.gough_stewart_forward import ForwardSolution, assembly_modes, matched_pose
 from kinematics.gough_stewart_geometry import GoughStewartGeometry, GoughStewartInertia, GoughStewartRanges
 from kinematics.indices import FviBounds
-from kinematics.mechanism import Array
+from kinematics.mechanism import Array, Mechanism
+from kinematics.model import Model
 from kinematics.ranges import PassiveJoint
 from kinematics.six_legs import SixLegs
+from kinematics.working_mode import Mode
 
 _SCREW = ("x", "y", "z", "about x", "about y", "about z")
 
@@ -38,24 +40,23 @@ class GoughStewart(SixLegs):
     geometry: GoughStewartGeometry
     inertia: GoughStewartInertia
     joint_units = ("m",) * 6
-    home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.6, 0.0, 0.0, 0.0)  # of the default geometry
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=2000.0, speed=0.3, force=500.0)
     margins = (*SixLegs.margins, "passive_joint")
 
-    @property
-    def initial_pose(self) -> Array:
-        """(6,) where `forward` starts unless told otherwise: the platform above the base, turned to match it best.
+    @staticmethod
+    def default_home(geometry: GoughStewartGeometry) -> tuple[float, ...]:
+        """The platform above the base, turned to match it best.
 
         Above is along the normal of the base's mean plane, on the side of R_0's z axis (or x, or y, if level with it),
-        three quarters of the mean radii's sum away; for the default geometry it is `home`.
+        three quarters of the mean radii's sum away.
         """
-        base, platform = self.geometry.in_reference_frame(), self.geometry.in_tool_frame()
+        base, platform = geometry.in_reference_frame(), geometry.in_tool_frame()
         a, b = base - base.mean(axis=0), platform - platform.mean(axis=0)
         normal = np.linalg.svd(a)[2][2]
-        components = np.array(self.geometry.Z)[:3, :3].T @ normal
+        components = np.array(geometry.Z)[:3, :3].T @ normal
         signs = [c for c in components[[2, 0, 1]] if abs(c) > 1e-9]
         radii = sum(np.linalg.norm(points, axis=1).mean() for points in (a, b))
-        return matched_pose(base, platform, 0.75 * radii * math.copysign(1.0, signs[0]) * normal)
+        return tuple(matched_pose(base, platform, 0.75 * radii * math.copysign(1.0, signs[0]) * normal).tolist())
 
     # Points.
 
@@ -85,7 +86,7 @@ class GoughStewart(SixLegs):
     @staticmethod
     def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
         """q_i - |A_i B_i|: J_q is the identity and J_x the inverse Jacobian [8.20]."""
-        return joints - GoughStewart.inverse_closed_form(pose, g)
+        return joints - GoughStewart.leg_lengths(pose, g)
 
     @classmethod
     def closure_by_twist(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
@@ -95,22 +96,26 @@ class GoughStewart(SixLegs):
         derivative = ca.jacobian(joints - _lengths(legs), twist)
         return ca.substitute(derivative, twist, ca.SX.zeros(6))
 
-    @classmethod
-    def cleared_j_x(cls) -> tuple[ca.SX, ca.SX]:
+    def cleared_j_x(self) -> tuple[ca.SX, ca.SX]:
         """Rows of half the squared lengths, which are polynomial; divided by the lengths they are J_x."""
-        model, twist = cls.model(), ca.SX.sym("twist", 6)
-        squares = ca.sum1(cls.legs(model.pose, model.g, twist) ** 2).T / 2
+        model, twist = self.model(), ca.SX.sym("twist", 6)
+        squares = ca.sum1(self.legs(model.pose, model.g, twist) ** 2).T / 2
         return ca.substitute(ca.jacobian(squares, twist), twist, ca.SX.zeros(6)), model.inverse
 
     @staticmethod
-    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """[8.11]; unique, as a length is positive."""
+    def leg_lengths(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(6,) [8.11]."""
         return _lengths(GoughStewart.legs(pose, g))
+
+    @staticmethod
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace, mode: Mode) -> ca.SX:  # noqa: ARG004
+        """[8.11]; unique, as a length is positive."""
+        return GoughStewart.leg_lengths(pose, g)
 
     @staticmethod
     def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """The leg itself: it reaches everything but its own base joint [m]."""
-        return GoughStewart.inverse_closed_form(pose, g)
+        return GoughStewart.leg_lengths(pose, g)
 
     @staticmethod
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
@@ -166,7 +171,7 @@ class GoughStewart(SixLegs):
 
     def lengths_and_jacobian(self, pose: Array) -> tuple[Array, Array]:
         """Leg lengths (..., 6) and the inverse Jacobian (..., 6, 6) [8.20] at once."""
-        lengths, jacobian = self._evaluate("newton", lambda m: [m.inverse, m.j_x], pose)
+        lengths, jacobian = self._evaluate(_newton, pose)
         return lengths, jacobian
 
     def leg_errors(self, pose: Array, joints: Array) -> tuple[Array, Array]:
@@ -179,12 +184,16 @@ class GoughStewart(SixLegs):
         points = (self.geometry.in_reference_frame(), self.geometry.in_tool_frame())
         return joints.mean(axis=1), joints.max(axis=1) + sum(float(np.abs(p).max()) for p in points)
 
-    def solve_forward(self, joints: Array, start: Array | None = None, iterations: int = 30) -> ForwardSolution:
-        """As `forward`, and says where it converged, in how many steps and with which error."""
-        return super().solve_forward(self._possible(self._joints(joints)), start, iterations)
+    def working_forward(self, joints: Array) -> Array:
+        """(..., 6) -> (..., 6): continued from home; NaN where a length is not positive."""
+        return super().working_forward(self._possible(self._joints(joints)))
+
+    def newton(self, joints: Array, start: Array | None = None, iterations: int = 30) -> ForwardSolution:
+        """As everywhere here; NaN where a length is not positive."""
+        return super().newton(self._possible(self._joints(joints)), start, iterations)
 
     def assembly_modes(self, joints: Array) -> Array:
-        """(6,) -> (k, 6), every real pose with these leg lengths, at most 40; the nearest to `initial_pose` first.
+        """(6,) -> (k, 6), every real pose with these leg lengths, at most 40; the nearest to home first.
 
         Raises:
             SelfMotion: the platform can move with its legs locked, so there are infinitely many.
@@ -195,17 +204,25 @@ class GoughStewart(SixLegs):
 
     # Masses and drawing.
 
+    def conditions(self) -> dict[str, Any]:
+        """Home too, where the joints rest there."""
+        at_home = {"home": self.home.tolist()} if self.ranges.rest is None else {}
+        return super().conditions() | at_home
+
     def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:
         """Universal joints on the base and spherical ones on the platform, mounted along the legs at `ranges.rest`."""
-        rests, legs = self.legs(ca.vertcat(*self.ranges.rest, 0, 0, 0), g), self.legs(pose, g)
+        rest = self.home if self.ranges.rest is None else (*self.ranges.rest, 0, 0, 0)
+        rest_pose, legs = ca.vertcat(*rest), self.legs(pose, g)
+        rests = self.legs(rest_pose, g)
         axes = rests @ ca.diag(1 / _lengths(rests))
+        turned = self.rotation(pose) @ (self.rotation(rest_pose).T @ axes)
         return [
             PassiveJoint(held[:, i], legs[:, i], joints[i], end, swivels=False)
-            for end, held in enumerate((axes, self.rotation(pose) @ axes))
+            for end, held in enumerate((axes, turned))
             for i in range(6)
         ]
 
-    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Screws driven by the joints; rods, platform and payload carried by the pose."""
         i, bodies = self.inertia, Bodies(self.inertia.rod_middle)
         legs = self.legs(pose, g)
@@ -229,6 +246,10 @@ class GoughStewart(SixLegs):
         lines.update({f"leg {i + 1}": ca.horzcat(base[:, i], ends[:, i]) for i in range(6)})
         lines["tool"] = ca.horzcat(ca.sum2(ends) / 6, pose[:3])
         return lines
+
+
+def _newton(_: Mechanism, model: Model) -> list[ca.SX]:
+    return [model.inverse, model.j_x]
 
 
 def _lengths(legs: ca.SX) -> ca.SX:

@@ -13,7 +13,7 @@ import numpy as np
 
 from kinematics.gough_stewart_modes import LostPaths, solver, turned_real
 from kinematics.gough_stewart_self_motion import SelfMotion, on_continuum, real_point
-from kinematics.orientation import angles, rotation, turn
+from kinematics.orientation import angles, rotation
 from kinematics.study import displacement
 
 if TYPE_CHECKING:
@@ -70,8 +70,7 @@ def step(robot: SixLegs, pose: Array, joints: Array) -> tuple[Array, Array]:
     change = _solved(jacobian, error)
     size = np.linalg.norm(change[:, 3:], axis=1) + np.linalg.norm(change[:, :3], axis=1) / robot.leg_sizes(joints)[0]
     change *= np.minimum(1.0, _LONGEST_TURN / np.maximum(size, 1e-300))[:, None]
-    turned = turn(change[:, 3:]) @ rotation(pose[:, 3:])
-    return np.concatenate([pose[:, :3] + change[:, :3], angles(turned)], axis=1), np.abs(error).max(axis=1)
+    return robot.moved(pose, change), np.abs(error).max(axis=1)
 
 
 def matched_pose(base: Array, platform: Array, height: Array) -> Array:
@@ -119,7 +118,7 @@ def assembly_modes(robot: GoughStewart, joints: Array) -> Array:
         return poses
     gaps = apart(poses, poses, unit) - _uncertainty(robot, poses, unit)[:, None]
     poses = poses[[not (gaps[i, :i] < 0.0).any() for i in range(len(poses))]]
-    order = np.argsort(apart(poses, robot.initial_pose[None], robot.characteristic_length)[:, 0], kind="stable")
+    order = np.argsort(apart(poses, robot.home[None], robot.characteristic_length)[:, 0], kind="stable")
     return poses[order]
 
 

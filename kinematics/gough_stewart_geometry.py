@@ -172,17 +172,20 @@ class GoughStewartRanges(RodRanges):
     """Legs of two stages, joints that tilt up to 52 degrees: an assumption of this project, not a datasheet.
 
     Attributes:
-        rest: the tool point [m] at which, with the platform not turned, each leg lies along the axes of its two joints.
+        rest: the tool point [m] at which, with the platform not turned, each leg lies along the axes of its two joints;
+            None: they do so at the robot's home.
     """
 
     dimensions: ClassVar[Mapping[str, str]] = {**RodRanges.dimensions, "rest": "length"}
     joints: Pair | tuple[Pair, ...] = (0.4, 1.0)
     passive: Pair = (0.9, 0.9)
-    rest: tuple[float, float, float] = (0.0, 0.0, 0.6)
+    rest: tuple[float, float, float] | None = None
 
     def check(self, count: int) -> None:
         """As for `RodRanges`; and `rest` is a point."""
         super().check(count)
+        if self.rest is None:
+            return
         rest = numbers_of(self.rest)
         if rest is None or rest.shape != (3,) or not np.isfinite(rest).all():
             raise InvalidValue("GoughStewartRanges rest", self.rest, "three finite coordinates [m]")

@@ -8,27 +8,40 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from types import SimpleNamespace
-from typing import ClassVar
 
 import casadi as ca
 import numpy as np
 
 from kinematics.bodies import Bodies, Particle, Rotor
+from kinematics.continuation import continued, continued_where_doubtful
+from kinematics.distinct import gaps, working_first
 from kinematics.geometry import TURN, angle, length, screw_pitch
 from kinematics.heli4_forward import Plates, plates
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
-from kinematics.mechanism import Array, Build
+from kinematics.mechanism import Array
 from kinematics.model import Model
 from kinematics.polynomial import real_roots
+from kinematics.programs import Build
 from kinematics.rods import RodLevel, outline
-from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, central_limbs, radial_directions
+from kinematics.rotary_limbs import (
+    ArmInertia,
+    ArmRanges,
+    Limbs,
+    RotaryLimbs,
+    central_limbs,
+    height_in_reach,
+    radial_directions,
+)
 from kinematics.twins import HalvesGeometry
 
 _UPPER = (0.0, 0.0, 1.0, 1.0)  # which limbs hold the plate that rides on the screw: (7), (8)
 _DEG = math.pi / 180.0
 _E_Z = ca.DM([0, 0, 1])
+_SAME = 1e-6  # rad, or of the robot's size: poses that differ by no more are one
+_APART = 0.25  # of a rod: with plates further apart the roots may change their order
 
 
 @dataclass(frozen=True)
@@ -76,7 +89,6 @@ class Heli4(RotaryLimbs, RodLevel):
     joint_units = ("rad",) * 4
     rotations = (3,)
     counts_turns = True
-    home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.7, 0.0)
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=150.0)
     margins = (*RodLevel.margins, "passive_joint")
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta", "epsilon_1", "epsilon_2")
@@ -88,6 +100,13 @@ class Heli4(RotaryLimbs, RodLevel):
     def characteristic_length(self) -> float:
         """p / (2 pi): the screw's lead turns a rotation into the travel between the plates [m]."""
         return abs(self.geometry.pitch) / TURN
+
+    @staticmethod
+    def default_home(geometry: Heli4Geometry) -> tuple[float, ...]:
+        """On the axis below the drives, in the middle of the reach."""
+        g = geometry
+        depth = height_in_reach(g.base_radius, g.platform_radius, g.arm_length, g.rod_length)
+        return 0.0, 0.0, -depth - g.plate_offset, 0.0
 
     # Points.
 
@@ -132,17 +151,16 @@ class Heli4(RotaryLimbs, RodLevel):
                 rods.append((ca.sumsqr(arms[:, limb] + offset - moved) - g.rod_length**2) / 2)
         return ca.vertcat(*rods)
 
-    @classmethod
-    def internal_determinant_symbolic(cls) -> ca.SX:
+    def internal_determinant_symbolic(self) -> ca.SX:
         """Expression (59) over d^4 l^4."""
-        model = cls.model()
-        rods = model.at_pose(cls.rods(model.pose, model.joints, model.g))
+        model = self.model()
+        rods = model.at_pose(self.rods(model.pose, model.joints, model.g))
         _, axis = radial_directions(model.g.azimuths)
         normals = [ca.cross(axis[:, i], rods[:, i]) for i in range(4)]
         lines = ca.cross(normals[0], normals[1]), ca.cross(normals[2], normals[3])
         return ca.cross(*lines)[2] / model.g.rod_length**4
 
-    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms with their drives, rods, plates, payload and tool."""
         i, plates = self.inertia, ("lower plate", "upper plate")
         bodies = self.limb_bodies(pose, joints, g, i.rod_mass, [plates[int(k)] for k in _UPPER])
@@ -171,45 +189,49 @@ class Heli4(RotaryLimbs, RodLevel):
 
     # The forward model.
 
-    @staticmethod
-    def _plates(model: Model) -> Plates:
-        """From s_i = B_i - A_i with both plates at the origin; (18) with h_i minus the actuator's own height."""
-        spheres = Heli4.platform_points(ca.SX(4, 1), model.g) - Heli4.limbs(model.g).elbows(model.joints)
-        return plates(spheres, model.g.rod_length)
-
     def _poses_of(self, joints: Array, w: Array, t: Array) -> Array:
         """(..., 4) joints and the plates' unknowns w (...,) and t (...,) -> (..., 4) poses."""
+        return evaluate(self.program(_pose_of_root), w[..., None], t[..., None], joints)[0]
 
-        def build(model: Model) -> Build:
-            w, t = ca.SX.sym("w"), ca.SX.sym("t")
-            position = self._plates(model).positions(w, t)
-            turn = (position[3] - position[2]) / (model.g.pitch / TURN)
-            return [w, t, model.joints], [ca.vertcat(position[:3], turn)]
+    @cached_property
+    def _sheet(self) -> int:
+        """Where home hangs from its four elbows: 1 below them, -1 above them, 0 otherwise."""
+        joints = self.inverse(self.home)
+        if np.isfinite(joints).all():
+            for sheet in (1, -1):
+                if gaps(self._on_sheet(joints, sheet), self.home, self.geometry.size) <= _SAME:
+                    return sheet
+            return 0
+        return 1
 
-        return evaluate(self.program("pose_of_root", build), w[..., None], t[..., None], joints)[0]
-
-    def forward(self, joints: Array) -> Array:
-        """(..., 4) -> (..., 4): both pairs of limbs on the lower sheet, the quartic's smallest real root."""
-
-        def build(model: Model) -> Build:
-            found = self._plates(model)
-            return [model.joints], [found.quartic_in_w(), found.kappa]
-
-        joints = self._joints(joints)
-        quartic, kappa = evaluate(self.program("quartic", build), joints)
-        w = real_roots(quartic, most=1)[..., 0]
+    def _on_sheet(self, joints: Array, sheet: int) -> Array:
+        """(..., 4) -> (..., 4): both pairs of limbs on the lower sheet (1), the smallest real root, or the upper."""
+        quartic, kappa = evaluate(self.program(_quartic), joints)
+        signs = np.where(np.arange(4, -1, -1) % 2, sheet, 1)  # of w in place of -w
+        w = sheet * real_roots(quartic * signs, most=1)[..., 0]
         t = np.divide(kappa[..., 0], w, out=np.full_like(w, np.nan), where=w != 0.0)
         return self._poses_of(joints, w, t)
+
+    def working_forward(self, joints: Array) -> Array:
+        """(..., 4) -> (..., 4): on the sheet of home.
+
+        Where not both pairs of limbs hang (or stand) clearly, beyond a singularity the outermost root may belong to
+        another assembly mode: such poses are continued from home.
+        """
+        joints = self._joints(joints)
+        if not self._sheet:
+            return continued(self, joints, self.home)
+        poses = self._on_sheet(joints, self._sheet)
+        apart = np.abs(self.geometry.pitch / TURN * poses[..., 3]) > _APART * self.geometry.rod_length
+        (above,) = evaluate(self.program(_above_elbows), poses, joints)
+        doubtful = apart | (self._sheet * above >= 0.0).any(axis=-1)
+        return continued_where_doubtful(self, joints, poses, doubtful)
 
     def assembly_modes(self, joints: Array) -> Array:
         """(4,) -> (k, 4), every real pose with these joints, at most four; the working one first."""
 
-        def build(model: Model) -> Build:
-            found = self._plates(model)
-            return [model.joints], [found.quartic_in_w(), found.quartic_in_t(), found.kappa]
-
         joints = self._one(joints)
-        in_w, in_t, (kappa,) = evaluate(self.program("quartics", build), joints)
+        in_w, in_t, (kappa,) = evaluate(self.program(_quartics), joints)
         # w t = kappa: each unknown serves where it is the larger one, up to a factor that no symmetry makes a tie.
         least, tie = np.sqrt(np.abs(kappa)), 0.9
         w, t = (
@@ -218,7 +240,39 @@ class Heli4(RotaryLimbs, RodLevel):
         )
         found = np.concatenate([np.stack([w, kappa / w]), np.stack([kappa / t, t])], axis=1)
         w, t = found[:, np.argsort(found[0])]
-        return self._poses_of(np.broadcast_to(joints, (w.size, 4)), w, t)
+        poses = self._poses_of(np.broadcast_to(joints, (w.size, 4)), w, t)
+        return working_first(poses, self.forward(joints), self.geometry.size)
+
+
+def _plates(model: Model) -> Plates:
+    """From s_i = B_i - A_i with both plates at the origin; (18) with h_i minus the actuator's own height."""
+    spheres = Heli4.platform_points(ca.SX(4, 1), model.g) - Heli4.limbs(model.g).elbows(model.joints)
+    return plates(spheres, model.g.rod_length)
+
+
+def _above_elbows(robot: Heli4, model: Model) -> Build:
+    """(2,) how high each pair of limbs holds its plate above the middle between its elbows, both moved to the plate."""
+    to_elbow = robot.limbs(model.g).elbows(model.joints) - robot.platform_points(model.pose, model.g)
+    return [model.pose, model.joints], [
+        -ca.vertcat(to_elbow[2, 0] + to_elbow[2, 1], to_elbow[2, 2] + to_elbow[2, 3]) / 2
+    ]
+
+
+def _quartic(_: Heli4, model: Model) -> Build:
+    found = _plates(model)
+    return [model.joints], [found.quartic_in_w(), found.kappa]
+
+
+def _quartics(_: Heli4, model: Model) -> Build:
+    found = _plates(model)
+    return [model.joints], [found.quartic_in_w(), found.quartic_in_t(), found.kappa]
+
+
+def _pose_of_root(_: Heli4, model: Model) -> Build:
+    w, t = ca.SX.sym("w"), ca.SX.sym("t")
+    position = _plates(model).positions(w, t)
+    turn = (position[3] - position[2]) / (model.g.pitch / TURN)
+    return [w, t, model.joints], [ca.vertcat(position[:3], turn)]
 
 
 def _heights(values: ca.SX) -> ca.SX:

@@ -6,9 +6,10 @@ import numpy as np
 
 from kinematics.heli4 import Heli4
 from kinematics.interpreter import evaluate
-from kinematics.mechanism import Array, Build
+from kinematics.mechanism import Array
 from kinematics.mobility import Joint, JointGraph
 from kinematics.model import Model
+from kinematics.programs import Build
 from kinematics.rotary_limbs import radial_directions
 
 _E_Z = np.array([0.0, 0.0, 1.0])
@@ -24,14 +25,8 @@ def heli4_joint_graph(robot: Heli4, pose: Array) -> JointGraph:
         UnreachablePose: a limb cannot reach the pose.
     """
     robot.require_reachable(pose)
-
-    def build(model: Model) -> Build:
-        points = Heli4.limbs(model.g).actuators, Heli4.limbs(model.g).elbows(model.joints)
-        platform = Heli4.platform_points(model.pose, model.g)
-        return [model.pose], [model.at_pose(p).T for p in (*points, platform, radial_directions(model.g.azimuths)[1])]
-
     pose = np.asarray(pose, dtype=float)
-    drives, arms, platforms, axes = evaluate(robot.program("joint_graph", build), pose)
+    drives, arms, platforms, axes = evaluate(robot.program(_places), pose)
     joints = []
     for i in range(4):
         arm, plate = f"arm {i + 1}", ("lower plate", "upper plate")[i // 2]
@@ -42,3 +37,10 @@ def heli4_joint_graph(robot: Heli4, pose: Array) -> JointGraph:
     joints.append(Joint("R", "tool", "lower plate", pose[:3], (_E_Z,)))
     joints.append(Joint("H", "tool", "upper plate", pose[:3], (_E_Z,), pitch=-robot.geometry.pitch))
     return JointGraph(tuple(joints))
+
+
+def _places(_: Heli4, model: Model) -> Build:
+    """Drives, elbows, rods' ends and axes."""
+    points = Heli4.limbs(model.g).actuators, Heli4.limbs(model.g).elbows(model.joints)
+    platform = Heli4.platform_points(model.pose, model.g)
+    return [model.pose], [model.at_pose(p).T for p in (*points, platform, radial_directions(model.g.azimuths)[1])]

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import ClassVar
 
 import casadi as ca
 import numpy as np
@@ -20,15 +19,16 @@ from kinematics.gough_stewart_forward import apart, matched_pose
 from kinematics.gough_stewart_geometry import GoughStewartGeometry, symmetric_points
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
-from kinematics.mechanism import Array, Build
+from kinematics.mechanism import Array
 from kinematics.model import Model
+from kinematics.programs import Build
 from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, columns, radial_directions, upright_limbs
 from kinematics.six_legs import SixLegs
 from kinematics.twins import twins
 
 _BASE = symmetric_points(0.28, TURN / 18, 0.0)
 _PLATFORM = symmetric_points(0.10, TURN / 18, TURN / 6)
-_DEPTH = 0.55 / (0.300 + 0.650)  # of `home`, over arm and rod
+_DEPTH = 0.55 / (0.300 + 0.650)  # of the default home, over arm and rod
 _IDENTITY = ca.SX(ca.DM.eye(4).reshape((16, 1)))
 
 
@@ -77,7 +77,8 @@ class HexaInertia(ArmInertia):
 
 
 class Hexa(SixLegs, RotaryLimbs):
-    """Pose [x, y, z, roll, pitch, yaw], joints q1..q6 measured from e_z outward; elbows out.
+    """Pose [x, y, z, roll, pitch, yaw], joints q1..q6 measured from e_z outward; elbows out unless
+    `home_joints` say.
 
     Orientation and twist are the Gough-Stewart platform's.
     """
@@ -88,19 +89,15 @@ class Hexa(SixLegs, RotaryLimbs):
     geometry: HexaGeometry
     inertia: HexaInertia
     joint_units = ("rad",) * 6
-    home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.55, 0.0, 0.0, 0.0)
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=1.0, force=50.0)
     margins = (*RotaryLimbs.margins, "passive_joint")
 
-    @property
-    def initial_pose(self) -> Array:
-        """(6,) where `forward` starts unless told otherwise: the platform below the base, turned to match it best.
-
-        Below by a share of arm and rod together; for the default geometry it is `home`.
-        """
-        base, platform = (np.array(p) for p in (self.geometry.base_points, self.geometry.platform_points))
-        below = _DEPTH * (self.geometry.arm_length + self.geometry.rod_length)
-        return matched_pose(base, platform, np.array([0.0, 0.0, -below]))
+    @staticmethod
+    def default_home(geometry: HexaGeometry) -> tuple[float, ...]:
+        """The platform below the base by a share of arm and rod together, turned to match it best."""
+        base, platform = (np.array(p) for p in (geometry.base_points, geometry.platform_points))
+        below = _DEPTH * (geometry.arm_length + geometry.rod_length)
+        return tuple(matched_pose(base, platform, np.array([0.0, 0.0, -below])).tolist())
 
     @staticmethod
     def limbs(g: SimpleNamespace) -> Limbs:
@@ -138,7 +135,7 @@ class Hexa(SixLegs, RotaryLimbs):
         _, hexapod = GoughStewart.scales(g)
         return ca.repmat(g.arm_length * g.rod_length, 6, 1), hexapod * g.rod_length**6
 
-    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, rods, platform, payload."""
         bodies = self.limb_bodies(pose, joints, g, self.inertia.rod_mass, ["platform"] * 6)
         self.platform_bodies(pose, self.platform_points(pose, g), payload, bodies)
@@ -155,14 +152,7 @@ class Hexa(SixLegs, RotaryLimbs):
 
     def leg_errors(self, pose: Array, joints: Array) -> tuple[Array, Array]:
         """(k, 6) what the rods lack to reach from the elbows to the platform [m], and the hexapod's Jacobian."""
-
-        def build(model: Model) -> Build:
-            hexapod = self._as_hexapod(model.joints, model.g)
-            lengths = GoughStewart.inverse_closed_form(model.pose, hexapod)
-            jacobian = -GoughStewart.closure_by_twist(model.pose, model.joints, hexapod)
-            return [model.pose, model.joints], [model.g.rod_length - lengths, jacobian]
-
-        errors, jacobian = evaluate(self.program("hexapod", build), pose, joints)
+        errors, jacobian = evaluate(self.program(_rods_as_legs), pose, joints)
         return errors, jacobian
 
     def leg_sizes(self, joints: Array) -> tuple[Array, Array]:
@@ -172,7 +162,7 @@ class Hexa(SixLegs, RotaryLimbs):
         return rods, rods + self.geometry.arm_length + points
 
     def assembly_modes(self, joints: Array) -> Array:
-        """(6,) -> (k, 6), every real pose with these joints, at most 40; the nearest to `initial_pose` first.
+        """(6,) -> (k, 6), every real pose with these joints, at most 40; the nearest to home first.
 
         Takes some seconds, as other joints make another hexapod.
 
@@ -184,9 +174,19 @@ class Hexa(SixLegs, RotaryLimbs):
         joints = self._one(joints)
         if not np.isfinite(joints).all():
             return np.empty((0, 6))
-        program = self.program("elbows", lambda m: ([m.joints], [self.limbs(m.g).elbows(m.joints).T]))
-        (elbows,) = evaluate(program, joints)
+        (elbows,) = evaluate(self.program(_elbows), joints)
         hexapod = GoughStewart(GoughStewartGeometry(tuple(map(tuple, elbows.tolist())), self.geometry.platform_points))
         modes = hexapod.assembly_modes(np.full(6, self.geometry.rod_length))
-        away = apart(modes, self.initial_pose[None], self.characteristic_length)[:, 0]
+        away = apart(modes, self.home[None], self.characteristic_length)[:, 0]
         return modes[np.argsort(away, kind="stable")]
+
+
+def _elbows(robot: Hexa, model: Model) -> Build:
+    return [model.joints], [robot.limbs(model.g).elbows(model.joints).T]
+
+
+def _rods_as_legs(robot: Hexa, model: Model) -> Build:
+    hexapod = robot._as_hexapod(model.joints, model.g)
+    lengths = GoughStewart.leg_lengths(model.pose, hexapod)
+    jacobian = -GoughStewart.closure_by_twist(model.pose, model.joints, hexapod)
+    return [model.pose, model.joints], [model.g.rod_length - lengths, jacobian]

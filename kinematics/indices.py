@@ -8,15 +8,17 @@ a characteristic length turns rotations into lengths.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import reduce
 from itertools import combinations
 
 import casadi as ca
 
+from kinematics.arguments import positive
 from kinematics.errors import InvalidValue
 from kinematics.linear import Minors, adjugate
+
+_LEAST, _MOST = 1e-50, 1e50  # of a bound of the FVI: squares of products of two must stay numbers
 
 
 @dataclass(frozen=True)
@@ -37,8 +39,10 @@ class FviBounds:
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
-            if not (math.isfinite(value) and value > 0.0):
-                raise InvalidValue(f"FviBounds {name}", value, "a finite number > 0")
+            number = positive(f"FviBounds {name}", value)
+            if not _LEAST <= number <= _MOST:
+                raise InvalidValue(f"FviBounds {name}", number, f"a number from {_LEAST:g} to {_MOST:g}")
+            object.__setattr__(self, name, number)
 
 
 def homogeneous(inverse_jacobian: ca.SX, rotations: tuple[int, ...], characteristic_length: float) -> ca.SX:

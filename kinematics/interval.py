@@ -113,8 +113,8 @@ def _apply(code, same, a, b, c, d, r, s):  # type: ignore[no-untyped-def]
         for i in range(r.size):
             p, q = a[i] * a[i], b[i] * b[i]
             least = 0.0 if a[i] <= 0.0 <= b[i] else min(p, q)
-            low, s[i] = _out(least, max(p, q), _TINY)
-            r[i] = max(low, 0.0)
+            low, most = _out(least, max(p, q), _TINY)
+            r[i], s[i] = max(low, 0.0) if most < np.inf else -np.inf, most  # a square of what is undefined is undefined
     elif code == MUL:
         for i in range(r.size):
             p, q, u, v = a[i] * c[i], a[i] * d[i], b[i] * c[i], b[i] * d[i]
@@ -221,7 +221,7 @@ def _cosine(a, b):  # type: ignore[no-untyped-def]
     `slack` covers the library's error, the rounding of a shift by pi / 2, and of pi itself, all relative to the angle.
     """
     slack = _LIBRARY * (1.0 + max(abs(a), abs(b)))
-    if not b - a < 6.0 or max(abs(a), abs(b)) > 1e6:
+    if not b - a < 6.0 or max(abs(a), abs(b)) > 1e9:
         return -1.0, 1.0
     low, high = min(np.cos(a), np.cos(b)) - 2.0 * slack, max(np.cos(a), np.cos(b)) + 2.0 * slack
     first, last = np.ceil((a - slack) / np.pi - 1e-12), np.floor((b + slack) / np.pi + 1e-12)

@@ -28,7 +28,7 @@ def link_tree(robot: Mechanism, reference: Reference) -> Tree:
     """
     if type(robot) not in _TREES:
         known = ", ".join(kind.__name__ for kind in _TREES)
-        raise InvalidValue("mechanism as a tree of links", type(robot).__name__, f"one of {known}")
+        raise InvalidValue("mechanism with a model for simulators", type(robot).__name__, f"one of {known}")
     return _TREES[type(robot)](robot.model(), reference)
 
 

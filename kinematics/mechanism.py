@@ -2,36 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import lru_cache
-from typing import Any
+import hashlib
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from typing import Any, Self
 
 import casadi as ca
 import numpy as np
 
+from kinematics import written
 from kinematics.block_program import BlockProgram
 from kinematics.bodies import InertiaRecord
 from kinematics.clearance import segment_gap_symbolic
+from kinematics.continuation import continued
 from kinematics.definition import Definition
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.geometry import GeometryRecord
 from kinematics.indices import (
     FviBounds,
-    force_capability_components,
-    fvi,
     fvi_components,
     homogeneous,
-    isotropic,
-    smallest,
 )
-from kinematics.interpreter import bulk, evaluate
+from kinematics.interpreter import evaluate
 from kinematics.linear import volume
 from kinematics.model import Model, model_of
+from kinematics.programs import Write, program_of
 from kinematics.ranges import Pair, PassiveJoint, joint_travel
 from kinematics.shapes import checked, together
+from kinematics.working_mode import Mode, mode_at
 
 Array = np.ndarray
-Build = tuple[list[ca.SX], list[ca.SX]]  # inputs and outputs of a program
 _SLICE = 8192  # poses whose matrices are in memory at once
 
 
@@ -42,10 +43,29 @@ class Mechanism(Definition):
     """
 
     ranges: Any
+    home: Array
+    mode: Mode
 
     def __init__(
-        self, geometry: GeometryRecord | None = None, inertia: InertiaRecord | None = None, ranges: Any = None
+        self,
+        geometry: GeometryRecord | None = None,
+        inertia: InertiaRecord | None = None,
+        ranges: Any = None,
+        home: Sequence[float] | Array | None = None,
+        home_joints: Sequence[float] | Array | None = None,
     ) -> None:
+        """A robot; each part has a default.
+
+        Args:
+            geometry, inertia, ranges: records of the mechanism's own kinds.
+            home: (n,) the pose that it works around, from which the working mode follows; about the middle of the
+                workspace by default.
+            home_joints: (m,) its joints there, which choose a branch of each limb's inverse, such as elbows in; by
+                default the usual branches.
+
+        Raises:
+            InvalidValue, InvalidShape: naming the part.
+        """
         self.geometry = geometry if geometry is not None else self.Geometry()
         if not isinstance(self.geometry, self.Geometry):
             raise InvalidValue(f"{type(self).__name__} geometry", geometry, f"a {self.Geometry.__name__}")
@@ -57,41 +77,90 @@ class Mechanism(Definition):
         if not isinstance(self.ranges, self.Ranges):
             raise InvalidValue(f"{type(self).__name__} ranges", ranges, f"a {self.Ranges.__name__}")
         self.ranges.check(len(self.joint_names))
-        self._programs = _programs_of(type(self), self.geometry, self.inertia, self.ranges)
+        joints = _vector(home_joints, "home_joints", self.joint_names)
+        self._given = _vector(home, "home", self.pose_names), joints
+        self.home = np.array(self._given[0] or self.default_home(self.geometry), dtype=float) + 0.0  # no -0
+        self.home.setflags(write=False)
+        self.mode = mode_at(self, np.array(joints) if joints else None)
+        self._identity = (type(self), self.geometry, self.inertia, self.ranges, tuple(self.home.tolist()), self.mode)
+        self._hash = hash(self._identity)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Mechanism) and self._identity == other._identity
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    def conditions(self) -> dict[str, Any]:
+        """Plain data that a margin depends on beside the geometry: the joint ranges and the working mode."""
+        return {"ranges": asdict(self.ranges), "mode": self.mode}
+
+    @property
+    def conditions_digest(self) -> str:
+        """SHA-256 of `conditions`, to tell which robot a proof was made for."""
+        return hashlib.sha256(json.dumps(self.conditions(), sort_keys=True).encode()).hexdigest()
+
+    def with_inertia(self, inertia: InertiaRecord) -> Self:
+        """The same robot with other masses and drives."""
+        return type(self)(self.geometry, inertia, self.ranges, *self._given)
+
+    def with_geometry(self, geometry: GeometryRecord) -> Self:
+        """The same robot with another geometry; a home that was given stays."""
+        return type(self)(geometry, self.inertia, self.ranges, *self._given)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.geometry})"
 
-    @classmethod
-    def model(cls) -> Model:
-        """The symbolic model, shared by all robots of this class."""
-        return model_of(cls)
+    def model(self) -> Model:
+        """The symbolic model, shared by all robots of this class and working mode."""
+        return model_of(type(self), self.mode)
 
-    @classmethod
-    def cleared_j_x(cls) -> tuple[ca.SX, ca.SX]:
+    def cleared_j_x(self) -> tuple[ca.SX, ca.SX]:
         """K (m, n) and k (m,) > 0 with J_x = diag(1 / k) K in the working mode; K without the divisors of its rows."""
-        model = cls.model()
+        model = self.model()
         return model.j_x_at_pose, ca.SX.ones(model.j_x_at_pose.shape[0])
 
     def inverse(self, pose: Array) -> Array:
         """(..., n) -> (..., m) joints of the working mode; a NaN row where a limb cannot reach."""
-        return self._evaluate("inverse", lambda model: [model.inverse], pose)[0]
+        return self._evaluate(written.inverse, pose)[0]
+
+    def forward(self, joints: Array, near: Array | None = None) -> Array:
+        """(..., m) -> (..., n) the pose with these joints; a NaN row where there is none.
+
+        Args:
+            joints: of the working mode's limbs [m or rad].
+            near: (n,) or (..., n) poses to continue from, each in the assembly mode that is wanted: the joints move
+                there on a straight line, without a singularity on the way. By default the assembly mode of `home`.
+        """
+        if near is None:
+            return self.working_forward(joints)
+        return continued(self, self._joints(joints), self._poses(near))
 
     def closure_residual(self, pose: Array, joints: Array) -> Array:
         """(..., n), (..., m) -> (..., m) the loop closure; zero when they belong together."""
         pose, joints = self._poses(pose), self._joints(joints)
-        program = self.program("closure", lambda m: ([m.pose, m.joints], [m.closure]))
-        pose, joints = together(pose, joints)
-        return evaluate(program, pose, joints)[0]
+        return evaluate(self.program(written.closure), *together(pose, joints))[0]
+
+    def closure_gap(self, pose: Array, joints: Array) -> Array:
+        """(..., n), (..., m) -> (..., m) by what displacement of the platform each limb's closure is missed, at least.
+
+        In radians, or in lengths over the robot's size.
+        """
+        return evaluate(self.program(written.closure_gap), *together(self._poses(pose), self._joints(joints)))[0]
+
+    def pose_units(self) -> Array:
+        """(n,) what makes a difference of poses small or large: the robot's size for a length [m], 1 for an angle."""
+        units = np.full(len(self.pose_names), self.geometry.size)
+        units[list(self.rotations)] = 1.0
+        return units
 
     def jacobians(self, pose: Array, joints: Array | None = None) -> tuple[Array, Array]:
         """J_q (..., m, m) and J_x (..., m, n), with J_q q' = J_x t; working mode, unless `joints` (..., m) say."""
         if joints is None:
-            diagonal, j_x = self._evaluate("jacobians", lambda model: [model.j_q_at_pose, model.j_x_at_pose], pose)
+            diagonal, j_x = self._evaluate(written.jacobians, pose)
         else:
-            program = self.program("jacobians_of_joints", lambda m: ([m.pose, m.joints], [m.j_q, m.j_x]))
             both = together(self._poses(pose), self._joints(joints))
-            diagonal, j_x = evaluate(program, *both, blank=True)
+            diagonal, j_x = evaluate(self.program(written.jacobians_of_joints), *both, blank=True)
         j_q = np.zeros((*diagonal.shape, diagonal.shape[-1]))
         j_q[..., range(diagonal.shape[-1]), range(diagonal.shape[-1])] = diagonal
         j_q[np.isnan(diagonal).any(axis=-1)] = np.nan
@@ -99,20 +168,19 @@ class Mechanism(Definition):
 
     def inverse_jacobian(self, pose: Array) -> Array:
         """(..., m, n) J_m = J_q^-1 J_x, so that q' = J_m t; of the joints, see `actuator_jacobian`."""
-        return self._evaluate("inverse_jacobian", lambda model: [model.inverse_jacobian], pose)[0]
+        return self._evaluate(written.inverse_jacobian, pose)[0]
 
     def actuator_jacobian(self, pose: Array) -> Array:
         """(..., m, n) C J_m: the rates of the actuators, which carry the limits, from the twist."""
-        return self._evaluate("actuator_jacobian", lambda model: [model.actuator_jacobian], pose)[0]
+        return self._evaluate(written.actuator_jacobian, pose)[0]
+
+    def pose_rates(self, pose: Array) -> Array:
+        """(..., n, n) what takes a twist to the rates of the pose: the identity unless the pose holds Euler angles."""
+        return evaluate(self.program(written.pose_rates), self._poses(pose), blank=True)[0]
 
     def isotropic(self, pose: Array, characteristic_length: float | None = None) -> tuple[Array, Array]:
         """v_w (...,) and f_w (...,): worst speed and force for unit actuator speed and effort; Shayya et al. (40)."""
-        length = self._length(characteristic_length)
-
-        def worst(model: Model) -> list[ca.SX]:
-            return list(isotropic(self._homogeneous(model, length)))
-
-        speed, force = self._evaluate(("isotropic", length), worst, pose)
+        speed, force = self._evaluate(written.isotropic, pose, self._length(characteristic_length))
         return speed[..., 0], force[..., 0]
 
     def force_capability(self, pose: Array, characteristic_length: float | None = None) -> Array:
@@ -120,12 +188,7 @@ class Mechanism(Definition):
 
         With m = n it is f_w; with m > n it is larger, as f_w admits minimum-norm efforts only.
         """
-        length = self._length(characteristic_length)
-
-        def radius(model: Model) -> list[ca.SX]:
-            return [smallest(force_capability_components(self._homogeneous(model, length)))]
-
-        return self._evaluate(("capability", length), radius, pose)[0][..., 0]
+        return self._evaluate(written.force_capability, pose, self._length(characteristic_length))[0][..., 0]
 
     def fvi(self, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None) -> Array:
         """(...,) min(v_w / v_wl, f_w / f_wl); Shayya et al. (39). NaN where the pose is out of reach."""
@@ -139,9 +202,7 @@ class Mechanism(Definition):
         result = np.empty(len(flat))
         for first in range(0, len(flat), _SLICE):
             part = slice(first, first + _SLICE)
-            (j_mw,) = self._evaluate(
-                ("homogeneous", length), lambda model: [self._homogeneous(model, length)], flat[part]
-            )
+            (j_mw,) = self._evaluate(written.homogeneous, flat[part], length)
             good = np.isfinite(j_mw).all(axis=(-2, -1))
             result[part] = np.where(np.isnan(j_mw).any(axis=(-2, -1)), np.nan, np.inf)
             result[part][good] = np.linalg.cond(j_mw[good])
@@ -156,16 +217,17 @@ class Mechanism(Definition):
         at the rods' ends; fvi; J_q (the worst |J_q,i| over its scale), det_J_q, det_J_x (normalised, in [0, 1]), and
         what the mechanism adds. NaN where the pose is out of reach (but for reach itself).
         """
-        bounds = bounds or self.fvi_bounds
+        if name == "reach":
+            return np.asarray(self._reach(pose).min(axis=-1))
+        program = self.margin_program(name, bounds, characteristic_length)
+        return evaluate(program, self._poses(pose), blank=True)[0][..., 0]
+
+    def margin_program(
+        self, name: str, bounds: FviBounds | None = None, characteristic_length: float | None = None
+    ) -> BlockProgram:
+        """What computes a margin other than reach: at a pose, the margin and a number that is NaN out of reach."""
         length = self._length(characteristic_length)
-
-        def worst(model: Model) -> list[ca.SX]:
-            if name == "fvi":
-                return [fvi(self._homogeneous(model, length), bounds)]
-            return [smallest(self.margin_components(name, bounds, length))]
-
-        (value,) = self._evaluate((name, bounds, length), worst, pose)
-        return value[..., 0]
+        return self.program(written.within_reach, written.margin, name, bounds or self.fvi_bounds, length)
 
     def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
         """A margin's components in the model's symbols `pose` and `geometry`, each to be at least the bound.
@@ -185,7 +247,7 @@ class Mechanism(Definition):
         if name == "clearance":
             return ca.vertcat(*(ca.norm_2(segment_gap_symbolic(one, two)) for one, two in self.segment_pairs()))
         if name == "fvi":
-            return fvi_components(self._homogeneous(model, characteristic_length), bounds)
+            return fvi_components(self.homogeneous_jacobian(characteristic_length), bounds)
         q_scale, x_scale = self.scales(model.g)
         if name == "det_J_x":
             return volume(model.j_x_at_pose) / x_scale
@@ -205,10 +267,7 @@ class Mechanism(Definition):
 
     def polylines(self, pose: Array) -> dict[str, Array]:
         """Named polylines (k, 3) of the mechanism at one pose (n,), for drawing."""
-        lines = self._evaluate(
-            "skeleton", lambda m: [m.at_pose(p) for p in self.skeleton(m.pose, m.joints, m.g).values()], pose
-        )
-        model = self.model()
+        lines, model = self._evaluate(written.skeleton, pose), self.model()
         return dict(zip(self.skeleton(model.pose, model.joints, model.g), (p.T for p in lines), strict=True))
 
     def singularities(self, pose: Array, tolerance: float = 1e-6) -> dict[str, Array]:
@@ -227,7 +286,7 @@ class Mechanism(Definition):
             UnreachablePose: naming the worst pose, its limb (counted from 1) and margin [m].
         """
         pose = self._poses(pose)
-        (margins,) = self._evaluate("reach", lambda model: [self.reach(model.pose, model.g)], pose)
+        margins = self._reach(pose)
         margins = np.where(np.isnan(margins), -np.inf, margins).reshape(-1, margins.shape[-1])
         if margins.size and margins.min() < 0.0:
             row, limb = np.unravel_index(int(margins.argmin()), margins.shape)
@@ -236,8 +295,13 @@ class Mechanism(Definition):
 
     # Helpers.
 
-    def _homogeneous(self, model: Model, length: float) -> ca.SX:
-        return homogeneous(model.actuator_jacobian, self.rotations, length)
+    def homogeneous_jacobian(self, characteristic_length: float) -> ca.SX:
+        """(m, n) J_mw of the actuators, in the model's symbols `pose` and `geometry`."""
+        return homogeneous(self.model().actuator_jacobian, self.rotations, characteristic_length)
+
+    def _reach(self, pose: Array) -> Array:
+        """(..., limbs) each limb's reach [m]."""
+        return evaluate(self.program(written.reach), self._poses(pose), blank=True)[0]
 
     def _length(self, given: float | None) -> float:
         length = self.characteristic_length if given is None else float(given)
@@ -245,21 +309,17 @@ class Mechanism(Definition):
             raise InvalidValue("characteristic_length", given, "a finite length > 0 m")
         return length
 
-    def _evaluate(self, key: object, expressions: Callable[[Model], object], pose: Array) -> list[Array]:
-        """All outputs at each pose; NaN as a whole where the pose is not finite or any of them has no value."""
-        pose = self._poses(pose)
-        program = self.program(key, lambda m: ([m.pose], list(expressions(m))))  # type: ignore[call-overload]
-        return evaluate(program, pose, blank=True)
+    def _evaluate(self, write: Callable[..., list[ca.SX]], pose: Array, *given: Any) -> list[Array]:
+        """What `write(robot, model, *given)` says at each pose; NaN as a whole where a limb cannot reach.
 
-    def program(self, key: object, build: Callable[[Model], Build]) -> BlockProgram:
-        """A program with this robot's numbers in place of the geometry's symbols; built at first use."""
-        if key not in self._programs:
-            model = self.model()
-            inputs, outputs = build(model)
-            with_symbols = ca.Function("symbolic", [*inputs, model.geometry], outputs)
-            numbers = with_symbols.call([*inputs, ca.SX(self.geometry.vector())])
-            self._programs[key] = bulk(ca.Function(type(self).__name__, inputs, numbers))
-        return self._programs[key]
+        NaN too where the pose is not finite or any of the outputs has no value.
+        """
+        program = self.program(written.within_reach, write, *given)
+        return evaluate(program, self._poses(pose), blank=True)[:-1]
+
+    def program(self, write: Write, *given: Any) -> BlockProgram:
+        """As `program_of`."""
+        return program_of(self, write, *given)
 
     def _poses(self, pose: Array) -> Array:
         return checked(pose, "pose", self.pose_names)
@@ -275,7 +335,11 @@ class Mechanism(Definition):
         return joints
 
 
-@lru_cache(maxsize=32)
-def _programs_of(*_: object) -> dict[object, BlockProgram]:
-    """The programs of all robots of one class with the same numbers, built once among them."""
-    return {}
+def _vector(given: Sequence[float] | Array | None, what: str, names: tuple[str, ...]) -> list[float] | None:
+    """Finite numbers under these names."""
+    if given is None:
+        return None
+    array = checked(np.asarray(given), what, names)
+    if array.shape != (len(names),) or not np.isfinite(array).all():
+        raise InvalidValue(what, f"{given!r:.80}", f"{len(names)} finite numbers: {', '.join(names)}")
+    return list(array.tolist())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache, cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 import casadi as ca
@@ -11,6 +11,7 @@ from kinematics.program import Op, Program, replay
 
 if TYPE_CHECKING:
     from kinematics.mechanism import Mechanism
+    from kinematics.working_mode import Mode
 
 
 class Model:
@@ -20,23 +21,30 @@ class Model:
     J_q = d phi / d joints and J_x = -d phi / d twist are the paper's; then J_q q' = J_x t. The constant matrix `drives`
     C takes joints to actuators.
 
+    The working mode says which joints belong to a pose (`inverse`, `at_pose`); the closure does not depend on it.
+
     Raises:
         TypeError: a limb's closure holds another limb's joint, or there is not one row a joint.
     """
 
-    def __init__(self, mechanism: type[Mechanism]) -> None:
-        self._mechanism = mechanism
+    def __init__(self, mechanism: type[Mechanism], mode: Mode) -> None:
+        self._mechanism, self.mode = mechanism, mode
         self.pose = ca.SX.sym("pose", len(mechanism.pose_names))
         self.joints = ca.SX.sym("joints", len(mechanism.joint_names))
         self.geometry, self.g = mechanism.Geometry.symbols()
         self.closure = mechanism.closure(self.pose, self.joints, self.g)
-        self.inverse = mechanism.inverse_closed_form(self.pose, self.g)
+        self.inverse = mechanism.inverse_closed_form(self.pose, self.g, mode)
         self.drives = mechanism.drives(self.g)
         j_q = ca.jacobian(self.closure, self.joints)
         if self.closure.shape[0] != self.joints.shape[0] or not j_q.sparsity().is_diag():
             raise TypeError(f"{mechanism.__name__}: the closure needs one row a limb, each with its own joint")
         self.j_q = ca.diag(j_q)
         self.j_x = -mechanism.closure_by_twist(self.pose, self.joints, self.g)
+
+    @cached_property
+    def inverse_function(self) -> ca.Function:
+        """(n,) pose and (k,) geometry -> (m,) joints, for one pose."""
+        return ca.Function("inverse", [self.pose, self.geometry], [self.inverse])
 
     @cached_property
     def j_q_at_pose(self) -> ca.SX:
@@ -64,7 +72,7 @@ class Model:
         Sines and cosines of a revolute joint become the algebraic expressions that the inverse model knows: faster,
         and far tighter in interval arithmetic.
         """
-        known = self._mechanism.joint_cosines_and_sines(self.pose, self.g)
+        known = self._mechanism.joint_cosines_and_sines(self.pose, self.g, self.mode)
         table = {}
         if known is not None:
             for i in range(self.joints.shape[0]):
@@ -85,7 +93,7 @@ class Model:
         return ca.substitute(result, self.joints, self.inverse)
 
 
-@cache
-def model_of(mechanism: type[Mechanism]) -> Model:
-    """The model of a mechanism, built once."""
-    return Model(mechanism)
+@lru_cache(maxsize=64)
+def model_of(mechanism: type[Mechanism], mode: Mode) -> Model:
+    """The model of a mechanism in a working mode, shared by all robots that have both."""
+    return Model(mechanism, mode)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
 
 from kinematics.interpreter import evaluate
-from kinematics.mechanism import Array, Build, Mechanism
+from kinematics.mechanism import Array, Mechanism
 from kinematics.model import Model
+from kinematics.programs import Build, Write
 from kinematics.shapes import checked
 
 
@@ -32,24 +32,31 @@ def joint_motion(robot: Mechanism, pose: Array, first: Array, second: Array, thi
     Returns:
         Joints and derivatives; NaN rows where a limb cannot reach.
     """
-    return _motion(robot, "joint_motion", lambda model: model.inverse, (pose, first, second, third))
+    return _motion(robot, _of_joints, (pose, first, second, third))
 
 
 def actuator_motion(robot: Mechanism, pose: Array, first: Array, second: Array, third: Array) -> JointMotion:
     """As `joint_motion`, of the actuators: what their limits bound. The same unless the drives couple joints."""
-    return _motion(robot, "actuator_motion", lambda model: model.drives @ model.inverse, (pose, first, second, third))
+    return _motion(robot, _of_actuators, (pose, first, second, third))
 
 
-def _motion(
-    robot: Mechanism, key: str, expression: Callable[[Model], ca.SX], motion: tuple[Array, Array, Array, Array]
-) -> JointMotion:
-    def build(model: Model) -> Build:
-        rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("first", "second", "third")]
-        return [model.pose, *rates], derivatives_along(expression(model), model.pose, rates)
+def _of_joints(_: Mechanism, model: Model) -> Build:
+    return _derivatives(model, model.inverse)
 
+
+def _of_actuators(_: Mechanism, model: Model) -> Build:
+    return _derivatives(model, model.drives @ model.inverse)
+
+
+def _derivatives(model: Model, expression: ca.SX) -> Build:
+    rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("first", "second", "third")]
+    return [model.pose, *rates], derivatives_along(expression, model.pose, rates)
+
+
+def _motion(robot: Mechanism, write: Write, motion: tuple[Array, Array, Array, Array]) -> JointMotion:
     named = zip(("pose", "first derivative", "second derivative", "third derivative"), motion, strict=True)
     given = [checked(v, name, robot.pose_names) for name, v in named]
-    found = JointMotion(*evaluate(robot.program(key, build), *np.broadcast_arrays(*given)))
+    found = JointMotion(*evaluate(robot.program(write), *np.broadcast_arrays(*given)))
     unreachable = np.isnan(found.position).any(axis=-1)
     for part in found:
         part[unreachable] = np.nan

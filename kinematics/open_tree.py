@@ -8,14 +8,15 @@ import casadi as ca
 import numpy as np
 
 from kinematics.bodies import Bodies, Particle
-from kinematics.dynamics import moving_bodies
+from kinematics.dynamics import moving_bodies, require_payload
 from kinematics.errors import InvalidValue
 from kinematics.interpreter import evaluate
 from kinematics.link_trees import link_tree
 from kinematics.links import Connection, Link, Reference, Tree, TreeJoint, universal
-from kinematics.mechanism import Array, Build, Mechanism
+from kinematics.mechanism import Array, Mechanism
 from kinematics.model import Model
 from kinematics.motion import derivatives_along
+from kinematics.programs import Build
 from kinematics.shapes import checked
 
 
@@ -59,6 +60,7 @@ def open_tree(robot: Mechanism, pose: Array, payload: float) -> OpenTree:
     pose, model = checked(pose, "pose", robot.pose_names), robot.model()
     if pose.ndim != 1:
         raise InvalidValue("reference pose", f"an array of shape {pose.shape}", "one pose")
+    require_payload(payload)
     robot.require_reachable(pose)
     numbers = [ca.DM(v) for v in (pose, robot.inverse(pose), robot.geometry.vector())]
 
@@ -98,13 +100,17 @@ def tree_motion(
         robot, reference: as for `open_tree`.
         pose, velocity, acceleration: (..., n) the motion.
     """
-    joints = [joint for link in open_tree(robot, reference, 0.0).tree.links for joint in link.joints]
-
-    def build(model: Model) -> Build:
-        rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration")]
-        coordinates = model.at_pose(ca.vertcat(*(joint.coordinate for joint in joints)))
-        return [model.pose, *rates], derivatives_along(coordinates, model.pose, rates)
-
-    program = robot.program(("tree_motion", tuple(np.asarray(reference).tolist())), build)
+    program = robot.program(_tree_motion, tuple(np.asarray(reference).tolist()))
     found = evaluate(program, *np.broadcast_arrays(pose, velocity, acceleration))
-    return {joint.name: (found[0][..., k], found[1][..., k], found[2][..., k]) for k, joint in enumerate(joints)}
+    names = [joint.name for joint in _tree_joints(robot, reference)]
+    return {name: (found[0][..., k], found[1][..., k], found[2][..., k]) for k, name in enumerate(names)}
+
+
+def _tree_joints(robot: Mechanism, reference: Array) -> list[TreeJoint]:
+    return [joint for link in open_tree(robot, reference, 0.0).tree.links for joint in link.joints]
+
+
+def _tree_motion(robot: Mechanism, model: Model, reference: tuple[float, ...]) -> Build:
+    rates = [ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration")]
+    coordinates = ca.vertcat(*(joint.coordinate for joint in _tree_joints(robot, np.array(reference))))
+    return [model.pose, *rates], derivatives_along(model.at_pose(coordinates), model.pose, rates)

@@ -10,25 +10,37 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from types import SimpleNamespace
-from typing import ClassVar
 
 import casadi as ca
 import numpy as np
 
 from kinematics.bodies import Bodies, Particle, Rotor
-from kinematics.distinct import distinct
-from kinematics.geometry import angle, length, ratio
+from kinematics.continuation import continued, continued_where_doubtful
+from kinematics.distinct import distinct, gaps, working_first
+from kinematics.geometry import TURN, angle, length, ratio
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.linear import determinant
-from kinematics.mechanism import Array, Build, Mechanism
+from kinematics.mechanism import Array, Mechanism
 from kinematics.model import Model
 from kinematics.par4_forward import Halves, candidates
-from kinematics.rotary_limbs import ArmInertia, ArmRanges, Limbs, RotaryLimbs, central_limbs, columns, radial_directions
+from kinematics.programs import Build
+from kinematics.rotary_limbs import (
+    ArmInertia,
+    ArmRanges,
+    Limbs,
+    RotaryLimbs,
+    central_limbs,
+    columns,
+    height_in_reach,
+    radial_directions,
+)
 from kinematics.twins import HalvesGeometry
 
 _DEG = math.pi / 180.0
+_SAME = 1e-6  # rad, or of the robot's size: poses that differ by no more are one
 _HALF = (-1.0, -1.0, 1.0, 1.0)  # which end of the bars each limb holds
 
 
@@ -83,7 +95,6 @@ class Par4(RotaryLimbs):
     joint_units = ("rad",) * 4
     rotations = (3,)
     counts_turns = True  # of the bars, by the gear
-    home: ClassVar[tuple[float, ...]] = (0.0, 0.0, -0.8, 0.0)
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
     margins = (*Mechanism.margins, "pi_joint", "passive_joint")
 
@@ -91,6 +102,12 @@ class Par4(RotaryLimbs):
     def characteristic_length(self) -> float:
         """b / k, the travel between the halves a radian of the tool [m]."""
         return self.geometry.bar_length / self.geometry.amplification
+
+    @staticmethod
+    def default_home(geometry: Par4Geometry) -> tuple[float, ...]:
+        """On the axis below the drives, in the middle of the reach."""
+        g = geometry
+        return 0.0, 0.0, -height_in_reach(g.base_radius, g.platform_radius, g.arm_length, g.rod_length), 0.0
 
     @staticmethod
     def limbs(g: SimpleNamespace) -> Limbs:
@@ -124,7 +141,7 @@ class Par4(RotaryLimbs):
             return ca.cos(model.pose[3] / model.g.amplification)
         return super().margin_components(name, bounds, characteristic_length)
 
-    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, rods, halves, bars, tool, payload."""
         i, psi, halves = self.inertia, pose[3] / g.amplification, ("half 1", "half 2")
         half = self.half_bar(psi, g)
@@ -151,12 +168,7 @@ class Par4(RotaryLimbs):
     def _candidates(self, joints: Array, every: bool) -> tuple[Array, Array]:
         """(k, 4) joints -> rows (j,) and poses (j, 4) close to all that have these joints."""
 
-        def build(model: Model) -> Build:
-            g = model.g
-            centres = self.limbs(g).elbows(model.joints) - self.platform_points(ca.SX(4, 1), g)
-            return [model.joints], [(centres + self.half_bar(ca.SX(0), g) @ ca.DM(_HALF).T).T]
-
-        (centres,) = evaluate(self.program("spheres", build), joints)
+        (centres,) = evaluate(self.program(_spheres), joints)
         g = self.geometry
         rows, halves = candidates(Halves(centres / g.rod_length, g.bar_length / g.rod_length), every)
         between = (halves[:, 1, :2] - halves[:, 0, :2]) @ [1, 1j] * np.exp(-1j * g.bar_angle)
@@ -164,7 +176,7 @@ class Par4(RotaryLimbs):
 
     def _polished(self, poses: Array, joints: Array, steps: int) -> Array:
         """Newton's method on the closure; (k, 4), NaN where it does not close."""
-        program = self.program("closure_and_j_x", lambda m: ([m.pose, m.joints], [m.closure, m.j_x]))
+        program = self.program(_closure_and_j_x)
         size = self.geometry.rod_length**2
         for _ in range(steps):
             error, j_x = evaluate(program, poses, joints)
@@ -175,25 +187,53 @@ class Par4(RotaryLimbs):
         error = np.abs(evaluate(program, poses, joints)[0]).max(axis=1)
         return np.where((error <= 1e-14 * size)[:, None], poses, np.nan)
 
-    def forward(self, joints: Array) -> Array:
-        """(..., 4) -> (..., 4): the lowest of the modes."""
-        joints = self._joints(joints)
+    @cached_property
+    def _side(self) -> int:
+        """Where home is among the poses of its joints: 1 the lowest, -1 the highest, 0 in between."""
+        joints = self.inverse(self.home)
+        if np.isfinite(joints).all():
+            for side in (1, -1):
+                if gaps(self._outermost(joints, side), self.home, self.geometry.size) <= _SAME:
+                    return side
+            return 0
+        return 1
+
+    def _outermost(self, joints: Array, side: int) -> Array:
+        """(..., 4) -> (..., 4): the lowest (1) or highest (-1) of the modes."""
         flat = joints.reshape(-1, 4)
         result = np.full(flat.shape, np.nan)
         rows, poses = self._candidates(flat, every=False)
-        order = np.lexsort((poses[:, 2], rows))
+        order = np.lexsort((side * poses[:, 2], rows))
         rows, poses = rows[order], poses[order]
-        while rows.size:  # once, unless the lowest candidate proves wrong
-            lowest = np.flatnonzero(np.diff(rows, prepend=-1))
-            here = rows[lowest]
-            result[here] = self._polished(poses[lowest], flat[here], 4)
+        while rows.size:  # once, unless the first candidate proves wrong
+            first = np.flatnonzero(np.diff(rows, prepend=-1))
+            here = rows[first]
+            result[here] = self._polished(poses[first], flat[here], 4)
             left = np.isnan(result[rows, 0])
-            left[lowest] = False
+            left[first] = False
             rows, poses = rows[left], poses[left]
         return result.reshape(joints.shape)
 
+    def working_forward(self, joints: Array) -> Array:
+        """(..., 4) -> (..., 4): the lowest mode or the highest, as home is; else continued from home.
+
+        Where not both halves hang (or stand) clearly, beyond a singularity the outermost mode may be another one than
+        home's: such poses are continued from home.
+        """
+        joints = self._joints(joints)
+        if self._side:
+            poses = self._outermost(joints, self._side)
+            (above,) = evaluate(self.program(_above_elbows), poses, joints)
+            doubtful = np.asarray((self._side * above >= 0.0).any(axis=-1))
+            poses = continued_where_doubtful(self, joints, poses, doubtful)
+        else:
+            poses = continued(self, joints, self.home)
+        turn = TURN * self.geometry.amplification  # of the bars: the same place
+        poses[..., 3] -= turn * np.round(poses[..., 3] / turn)
+        return poses
+
     def assembly_modes(self, joints: Array) -> Array:
-        """(4,) -> (k, 4), every isolated real pose with these joints, at most eight; the lowest first."""
+        """(4,) -> (k, 4), every isolated real pose with these joints, at most eight; the working one first."""
         joints = self._one(joints)
         _, poses = self._candidates(joints[None], every=True)
         poses = self._polished(poses, np.broadcast_to(joints, poses.shape), 20)
@@ -202,12 +242,31 @@ class Par4(RotaryLimbs):
         turn = np.exp(1j * poses[:, 3] / self.geometry.amplification)
         apart = np.abs(turn[:, None] - turn) * self.geometry.bar_length / self.geometry.rod_length
         apart = apart + np.linalg.norm(poses[:, None, :3] - poses[:, :3], axis=-1) / self.geometry.rod_length
-        return poses[distinct(apart, self._regularity(poses, np.broadcast_to(joints, poses.shape)))]
+        poses = poses[distinct(apart, self._regularity(poses, np.broadcast_to(joints, poses.shape)))]
+        return working_first(poses, self.forward(joints), self.geometry.size)
 
     def _regularity(self, poses: Array, joints: Array) -> Array:
         """(k,) det J_x over its scale, in any mode."""
+        return evaluate(self.program(_regularity), poses, joints)[0][..., 0]
 
-        def build(model: Model) -> Build:
-            return [model.pose, model.joints], [determinant(model.j_x) / self.scales(model.g)[1]]
 
-        return evaluate(self.program("regularity", build), poses, joints)[0][..., 0]
+def _spheres(robot: Par4, model: Model) -> Build:
+    g = model.g
+    centres = robot.limbs(g).elbows(model.joints) - robot.platform_points(ca.SX(4, 1), g)
+    return [model.joints], [(centres + robot.half_bar(ca.SX(0), g) @ ca.DM(_HALF).T).T]
+
+
+def _above_elbows(robot: Par4, model: Model) -> Build:
+    """(2,) how high each half is above the middle between its elbows."""
+    to_elbow = robot.limbs(model.g).elbows(model.joints) - robot.platform_points(model.pose, model.g)
+    return [model.pose, model.joints], [
+        -ca.vertcat(to_elbow[2, 0] + to_elbow[2, 1], to_elbow[2, 2] + to_elbow[2, 3]) / 2
+    ]
+
+
+def _closure_and_j_x(_: Par4, model: Model) -> Build:
+    return [model.pose, model.joints], [model.closure, model.j_x]
+
+
+def _regularity(robot: Par4, model: Model) -> Build:
+    return [model.pose, model.joints], [determinant(model.j_x) / robot.scales(model.g)[1]]

@@ -8,9 +8,10 @@ errs, the expression here follows from the closure and the documentation says so
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 from types import SimpleNamespace
-from typing import ClassVar
 
 import casadi as ca
 import numpy as np
@@ -23,7 +24,9 @@ from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array, Mechanism
 from kinematics.model import Model
+from kinematics.programs import Build
 from kinematics.ranges import Pair, PassiveJoint, RodRanges
+from kinematics.working_mode import Mode
 
 _E_Z = ca.DM([0, 0, 1])
 # Of the larger pitch. A rounding of a nut's height [m] turns theta by 2 pi / |p_1 - p_2| times as much [rad]: at this
@@ -110,7 +113,6 @@ class Peppermill(Mechanism):
     joint_units = ("m", "m", "rad", "rad")
     rotations = (3,)
     counts_turns = True
-    home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.0, 0.0)
     # 750 W servos at 3000 rpm and three times their rated torque, asked for 2.5 m/s and 50 N: our assumption.
     fvi_bounds = FviBounds(joint_speed=314.0, joint_effort=7.2, speed=2.5, force=50.0)
     margins = (*Mechanism.margins, "passive_joint")
@@ -120,6 +122,24 @@ class Peppermill(Mechanism):
         """|p_1 - p_2| / (4 pi), that is p / (2 pi) for the paper's opposite pitches: nut travel per angle [m]."""
         first, second = self.geometry.pitches
         return abs(first - second) / (2 * TURN)
+
+    @staticmethod
+    def default_home(geometry: PeppermillGeometry) -> tuple[float, ...]:
+        """On both drive axes' common normal, midway between the heights that both limbs reach."""
+        g = geometry
+        low, high = zip(
+            *((abs(r - f), r + f) for r, f in zip(g.proximal_lengths, g.distal_lengths, strict=True)), strict=True
+        )
+        bottom, top = max(low[0], 2 * g.half_distance - high[1]), min(high[0], 2 * g.half_distance - low[1])
+        return 0.0, 0.0, (bottom + top) / 2 - g.half_distance, 0.0
+
+    @cached_property
+    def sides(self) -> tuple[int, int]:
+        """Signs of v_1z and v_2z at home: whether each limb's distal link points up (1) or down (-1)."""
+        first, second = self._evaluate(_distal_heights, self.home)[0].tolist()
+        if math.isnan(first + second):
+            return limbs.SIDES[0]
+        return (1 if first > 0.0 else -1, 1 if second > 0.0 else -1)
 
     # The closure and its closed forms.
 
@@ -131,20 +151,25 @@ class Peppermill(Mechanism):
         return ca.vertcat(joints[:2] - pose[:2], (g.distal_lengths - square / g.distal_lengths) / 2)
 
     @staticmethod
-    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(19), (25) with the + root for both limbs: 0 < lambda_i < pi."""
-        return ca.vertcat(pose[:2], limbs.angles(pose, limbs.ELBOWS[0], g))
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace, mode: Mode) -> ca.SX:
+        """(19), (25), usually with the + root for both limbs: 0 < lambda_i < pi."""
+        return ca.vertcat(pose[:2], mode.angles(*limbs.cosines_and_sines(pose, mode.branches[2:], g), first=2))
 
     @staticmethod
-    def joint_cosines_and_sines(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+    def joint_cosines_and_sines(pose: ca.SX, g: SimpleNamespace, mode: Mode) -> tuple[ca.SX, ca.SX]:
         """Of theta_i without an angle; d_i stands under no cosine, so its rows are never read."""
-        cosines, sines = limbs.cosines_and_sines(pose, limbs.ELBOWS[0], g)
+        cosines, sines = limbs.cosines_and_sines(pose, mode.branches[2:], g)
         return ca.vertcat(ca.cos(pose[:2]), cosines), ca.vertcat(ca.sin(pose[:2]), sines)
 
     @staticmethod
     def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """How much closer or farther P_i could be before it left the two-bar chain's ring [m]."""
         return limbs.reach(pose, g)
+
+    @classmethod
+    def limb_roots(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """Of the two-bar chains' triangles."""
+        return limbs.triangle(limbs.target(pose, g), g)[2]
 
     @staticmethod
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
@@ -184,40 +209,28 @@ class Peppermill(Mechanism):
     # All modes.
 
     def inverse_modes(self, pose: Array) -> Array:
-        """(..., 4) -> (..., 4 modes, 4 joints): elbows (+ +), (+ -), (- +), (- -), working mode first; else NaN."""
-
-        def modes(model: Model) -> list[ca.SX]:
-            columns = [ca.vertcat(model.pose[:2], limbs.angles(model.pose, e, model.g)) for e in limbs.ELBOWS]
-            return [ca.horzcat(*columns).T]
-
-        joints = self._evaluate("inverse_modes", modes, pose)[0]
+        """(..., 4) -> (..., 4 modes, 4 joints): elbows (+ +), (+ -), (- +), (- -); else NaN."""
+        joints = self._evaluate(_inverse_modes, pose)[0]
         joints[np.isnan(joints).any(axis=(-2, -1))] = np.nan
         return joints
 
     def forward_modes(self, joints: Array) -> Array:
-        """(..., 4) -> (..., 4 modes, 4): signs of v_1z, v_2z (+ -), (+ +), (- -), (- +), the working mode first."""
-        program = self.program(
-            "forward_modes",
-            lambda m: ([m.joints], [ca.horzcat(*(limbs.pose_of_joints(m.joints, s, m.g) for s in limbs.SIDES)).T]),
-        )
-        pose = evaluate(program, self._joints(joints))[0]
+        """(..., 4) -> (..., 4 modes, 4): signs of v_1z, v_2z (+ -), (+ +), (- -), (- +)."""
+        pose = evaluate(self.program(_forward_modes), self._joints(joints))[0]
         pose[np.isnan(pose).any(axis=(-2, -1))] = np.nan
         return pose
 
-    def forward(self, joints: Array) -> Array:
-        """(..., 4) -> (..., 4): limb 1 reaches up to the platform, limb 2 down; a NaN row where there is no pose.
+    def working_forward(self, joints: Array) -> Array:
+        """(..., 4) -> (..., 4): each limb reaches up or down to the platform as it does at home.
 
         It undoes `inverse` wherever the distal links do so: up to the singularities of the second kind.
         """
-        program = self.program("forward", lambda m: ([m.joints], [limbs.pose_of_joints(m.joints, limbs.SIDES[0], m.g)]))
-        pose = evaluate(program, self._joints(joints))[0]
-        pose[np.isnan(pose).any(axis=-1)] = np.nan
-        return pose
+        return self.forward_modes(joints)[..., limbs.SIDES.index(self.sides), :]
 
     def assembly_modes(self, joints: Array) -> Array:
         """(4,) -> (k, 4), every real pose with these joints, at most four; the working one first."""
         joints = self._one(joints)
-        modes = self.forward_modes(joints)
+        modes = np.roll(self.forward_modes(joints), -limbs.SIDES.index(self.sides), axis=0)
         modes = modes[np.isfinite(modes).all(axis=-1)]
         _, first = np.unique(modes, axis=0, return_index=True)
         return modes[np.sort(first)]
@@ -227,13 +240,15 @@ class Peppermill(Mechanism):
     def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:
         """The two R of each CRR limb: the elbow, at lambda_i, and that on the nut, which stays upright.
 
-        The elbow rests at a right angle; the distal link at the nut where it points up (limb 1) or down (limb 2).
+        The elbow rests at a right angle; the distal link at the nut where it points up or down, as it does at home.
         """
         _, _, elbows, nuts = self.points(pose, joints, g)
         theta, rods = joints[2:], nuts - elbows
         proximal, up = limbs.in_space(limbs.Plane(ca.cos(theta), ca.sin(theta))), ca.SX(_E_Z)
         first = [PassiveJoint(proximal[:, i], rods[:, i], g.distal_lengths[i], 0) for i in range(2)]
-        return first + [PassiveJoint((up, -up)[i], rods[:, i], g.distal_lengths[i], 1, swivels=False) for i in range(2)]
+        return first + [
+            PassiveJoint(self.sides[i] * up, rods[:, i], g.distal_lengths[i], 1, swivels=False) for i in range(2)
+        ]
 
     @staticmethod
     def points(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
@@ -245,7 +260,7 @@ class Peppermill(Mechanism):
         nuts = ca.repmat(pose[:3], 1, 2) + _E_Z @ (g.pitches.T / TURN * pose[3])
         return origins, carriages, carriages + proximal, nuts
 
-    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Motors, carriages, proximal and distal links, nuts, platform, payload."""
         i, bodies = self.inertia, Bodies(self.inertia.rod_middle)
         _, carriages, elbows, nuts = self.points(pose, joints, g)
@@ -283,3 +298,17 @@ class Peppermill(Mechanism):
         pointer = 0.2 * g.proximal_lengths[0] * ca.vertcat(ca.cos(pose[3]), ca.sin(pose[3]), 0)
         lines["tool"] = ca.horzcat(pose[:3], pose[:3] + pointer)
         return lines
+
+
+def _distal_heights(_: Peppermill, model: Model) -> list[ca.SX]:
+    link = limbs.distal(model.pose, model.joints, model.g)
+    return [model.at_pose(ca.vertcat(link.along_y[0], link.along_x[1]))]
+
+
+def _inverse_modes(_: Peppermill, model: Model) -> list[ca.SX]:
+    found = [limbs.cosines_and_sines(model.pose, elbows, model.g) for elbows in limbs.ELBOWS]
+    return [ca.horzcat(*(ca.vertcat(model.pose[:2], model.mode.angles(*both, first=2)) for both in found)).T]
+
+
+def _forward_modes(_: Peppermill, model: Model) -> Build:
+    return [model.joints], [ca.horzcat(*(limbs.pose_of_joints(model.joints, s, model.g) for s in limbs.SIDES)).T]

@@ -14,8 +14,8 @@ import casadi as ca
 
 from kinematics.geometry import TURN
 
-ELBOWS = ((1, 1), (1, -1), (-1, 1), (-1, -1))  # sign of sin lambda_i, the +- of (25); the working mode first
-SIDES = ((1, -1), (1, 1), (-1, -1), (-1, 1))  # sign of v_iz; working: limb 1 reaches up, limb 2 down
+ELBOWS = ((1, 1), (1, -1), (-1, 1), (-1, -1))  # sign of sin lambda_i, the +- of (25); usual first
+SIDES = ((1, -1), (1, 1), (-1, -1), (-1, 1))  # sign of v_iz; usual: limb 1 reaches up, limb 2 down
 
 
 class Plane(NamedTuple):
@@ -31,7 +31,7 @@ def target(pose: ca.SX, g: SimpleNamespace) -> Plane:
     return Plane(ca.vertcat(pose[1], heights[1]), ca.vertcat(heights[0], pose[0]))
 
 
-def _triangle(q: Plane, g: SimpleNamespace) -> tuple[ca.SX, ca.SX, ca.SX]:
+def triangle(q: Plane, g: SimpleNamespace) -> tuple[ca.SX, ca.SX, ca.SX]:
     """|q|^2, -e_3 of (26), sqrt(e_1^2 + e_2^2 - e_3^2) as a product that keeps its digits near straight limbs.
 
     The root is NaN where the angle is free.
@@ -48,21 +48,10 @@ def _determined(square: ca.SX, g: SimpleNamespace) -> ca.SX:
     return ca.fmax(square, ca.fabs(g.proximal_lengths - g.distal_lengths)) > 0
 
 
-def angles(pose: ca.SX, elbows: tuple[int, int], g: SimpleNamespace) -> ca.SX:
-    """(2,) theta_i; (24)-(26) by two angles, since the half angle of (25) is not defined at pi.
-
-    Continuous wherever limb 1 reaches up and limb 2 down: the cuts lie on the other sides.
-    """
+def cosines_and_sines(pose: ca.SX, elbows: tuple[int, ...], g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+    """(2,) and (2,) of theta_i; (24)-(26), without the half angle of (25), which is not defined at pi."""
     q = target(pose, g)
-    _, right, root = _triangle(q, g)
-    direction = ca.vertcat(ca.atan2(q.along_y[0], q.along_x[0]), TURN / 2 + ca.atan2(-q.along_y[1], -q.along_x[1]))
-    return direction - ca.DM(elbows) * ca.atan2(root, right)
-
-
-def cosines_and_sines(pose: ca.SX, elbows: tuple[int, int], g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
-    """(2,) and (2,) of `angles`, without an angle."""
-    q = target(pose, g)
-    square, right, root = _triangle(q, g)
+    square, right, root = triangle(q, g)
     root = ca.DM(elbows) * root
     return (q.along_x * right + q.along_y * root) / square, (q.along_y * right - q.along_x * root) / square
 

@@ -14,9 +14,10 @@ import numpy as np
 from kinematics import peppermill_limbs as limbs
 from kinematics.errors import InvalidValue
 from kinematics.interpreter import evaluate
-from kinematics.mechanism import Array, Build
+from kinematics.mechanism import Array
 from kinematics.model import Model
 from kinematics.peppermill import Peppermill
+from kinematics.programs import Build
 
 _CLOSED = 1e-9  # of a link's length: joints further than this from the closure do not belong to the pose
 
@@ -62,7 +63,7 @@ def links(robot: Peppermill, pose: Array, joints: Array | None = None) -> Links:
         raise InvalidValue("joints", f"a loop open by {gap:.3g} m", "joints that belong to the pose")
     lead = np.broadcast_shapes(pose.shape[:-1], joints.shape[:-1])
     both = [np.broadcast_to(a, (*lead, 4)) for a in (pose, joints)]
-    return Links(*evaluate(robot.program("links", _links), *both))
+    return Links(*evaluate(robot.program(_links), *both))
 
 
 def singularity_kinds(
@@ -85,7 +86,7 @@ def singularity_kinds(
     return SingularityKinds(first, second, first & second)
 
 
-def _links(model: Model) -> Build:
+def _links(_: Peppermill, model: Model) -> Build:
     theta, link = model.joints[2:], limbs.distal(model.pose, model.joints, model.g)
     u = limbs.Plane(ca.cos(theta), ca.sin(theta))
     v = limbs.Plane(link.along_x / model.g.distal_lengths, link.along_y / model.g.distal_lengths)

@@ -9,19 +9,19 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import ClassVar
 
 import casadi as ca
 import numpy as np
 
 from kinematics.bodies import Bodies, InertiaRecord, Particle
+from kinematics.continuation import continued_where_doubtful
 from kinematics.distinct import distinct
-from kinematics.errors import InvalidShape
 from kinematics.geometry import TURN, GeometryRecord, Points, length
 from kinematics.interpreter import evaluate
-from kinematics.mechanism import Array, Build, Mechanism
+from kinematics.mechanism import Array, Mechanism
 from kinematics.model import Model
 from kinematics.planar_forward import placements, rods_and_determinant
+from kinematics.programs import Build
 from kinematics.twins import ALIKE, twins
 
 _AROUND = [0, 1, 2, 0]
@@ -92,13 +92,18 @@ class Planar(Mechanism):
     pose_names = ("x", "y", "theta")
     joint_names = ("q1", "q2", "q3")
     rotations = (2,)
-    home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.0)
 
     @property
     def characteristic_length(self) -> float:
         """Root mean square distance of the B_i from their centroid [m]."""
         points = np.array(self.geometry.platform_points)
         return float(np.sqrt(((points - points.mean(axis=0)) ** 2).sum(axis=1).mean()))
+
+    @staticmethod
+    def default_home(geometry: PlanarGeometry) -> tuple[float, ...]:
+        """The platform's centroid on the base's, not turned."""
+        base, platform = (np.mean(points, axis=0) for points in (geometry.base_points, geometry.platform_points))
+        return (*(base - platform).tolist(), 0.0)
 
     @staticmethod
     @abstractmethod
@@ -126,7 +131,7 @@ class Planar(Mechanism):
         points = ca.reshape(g.platform_points, 2, 3)
         return 1.5 * ca.sqrt(ca.sumsqr(points - ca.repmat(ca.sum2(points) / 3, 1, 3)))
 
-    def platform_bodies(self, pose: ca.SX, g: SimpleNamespace, payload: float, bodies: Bodies) -> None:
+    def platform_bodies(self, pose: ca.SX, g: SimpleNamespace, payload: float | ca.SX, bodies: Bodies) -> None:
         """Adds platform and payload."""
         points, share = self.platform_points(pose, g), self.inertia.platform_mass / 3
         bodies.particles.extend(Particle("platform", share, points[:, i]) for i in range(3))
@@ -145,26 +150,16 @@ class Planar(Mechanism):
     def _problem(self, joints: Array) -> tuple[Array, Array, Array]:
         """(k, 3) joints -> complex centres (k, 3), radii (k, 3), and the platform's points (3,)."""
 
-        def build(model: Model) -> Build:
-            centres, radii = self.circles(model.joints, model.g)
-            return [model.joints], [centres[0, :].T, centres[1, :].T, radii + 0 * model.joints]
-
-        x, y, radii = evaluate(self.program("circles", build), _bounded(joints))
+        x, y, radii = evaluate(self.program(_circles), _bounded(joints))
         return x + 1j * y, radii, np.array(self.geometry.platform_points) @ [1, 1j]
 
-    def forward(self, joints: Array, near: Array | None = None) -> Array:
-        """(..., 3) -> (..., 3): of the modes on `near`'s side of the parallel singularities the one nearest to it.
+    def working_forward(self, joints: Array) -> Array:
+        """(..., 3) -> (..., 3): of the modes on home's side of the parallel singularities the one nearest to home.
 
-        Its side is that of the same sign of det J_x; any, where `near` itself is singular or out of reach.
-
-        Args:
-            joints: (..., 3).
-            near: (3,) a pose, `home` if not given.
+        Its side is that of the same sign of det J_x; any, where home itself is singular or out of reach. Far from home
+        several modes may be on its side: `near` then says which one is meant.
         """
-        joints = self._joints(joints)
-        wanted = _bounded(self._poses(np.array(self.home if near is None else near)))
-        if wanted.shape != (3,):
-            raise InvalidShape("near, one pose", self.pose_names, wanted.shape)
+        joints, wanted = self._joints(joints), self.home
         centres, radii, points = self._problem(joints.reshape(-1, 3))
         rows, p, theta = placements(centres, radii, points)
         side = np.nan_to_num(self._side(wanted[None, 0] + 1j * wanted[1], wanted[2:], self.inverse(wanted[None])))
@@ -176,7 +171,8 @@ class Planar(Mechanism):
         rows, first = np.unique(rows[order], return_index=True)
         result = np.full((len(centres), 3), np.nan)
         result[rows] = _poses(p, theta)[order[first]]
-        return result.reshape(joints.shape)
+        none = np.zeros(joints.shape[:-1], dtype=bool)
+        return continued_where_doubtful(self, _bounded(joints), result.reshape(joints.shape), none)
 
     def _side(self, p: Array, theta: Array, joints: Array) -> Array:
         """(k,) sign of det J_x, up to a sign that is the same everywhere."""
@@ -195,6 +191,11 @@ class Planar(Mechanism):
         kept = distinct(apart, det / (length * np.prod(radii) + 1e-300))
         away = np.abs(p - complex(*self.home[:2])) / length + np.abs(turn - np.exp(1j * self.home[2]))
         return _poses(p, theta)[sorted(kept, key=lambda i: away[i])]
+
+
+def _circles(robot: Planar, model: Model) -> Build:
+    centres, radii = robot.circles(model.joints, model.g)
+    return [model.joints], [centres[0, :].T, centres[1, :].T, radii + 0 * model.joints]
 
 
 def _bounded(rows: Array) -> Array:

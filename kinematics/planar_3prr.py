@@ -15,6 +15,7 @@ from kinematics.mechanism import Array
 from kinematics.planar import AZIMUTHS, Planar, PlanarGeometry, PlanarInertia
 from kinematics.ranges import JointRanges, Pair
 from kinematics.rotary_limbs import radial_directions
+from kinematics.working_mode import Mode
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class Planar3PRRRanges(JointRanges):
 class Planar3PRR(Planar):
     """Pose [x, y, theta], joints q1..q3, the sliders' travels from A_i along their rails.
 
-    Working mode: each slider on the lower side, its rod leading up the rail to the platform.
+    Usual branch: each slider on the lower side, its rod leading up the rail to the platform.
     """
 
     Geometry = Planar3PRRGeometry
@@ -75,10 +76,15 @@ class Planar3PRR(Planar):
         return along, across
 
     @staticmethod
-    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """The smaller root."""
-        along, across = Planar3PRR._from_rails(pose, g)
-        return along - ca.sqrt(g.rod_lengths**2 - across**2)
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace, mode: Mode) -> ca.SX:
+        """The smaller root, unless a branch says otherwise."""
+        roots = Planar3PRR.limb_roots(pose, g)
+        return Planar3PRR._from_rails(pose, g)[0] - ca.vertcat(*(b * roots[i] for i, b in enumerate(mode.branches)))
+
+    @classmethod
+    def limb_roots(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """How far each slider is from the foot of its platform point."""
+        return ca.sqrt(g.rod_lengths**2 - cls._from_rails(pose, g)[1] ** 2)
 
     @staticmethod
     def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
@@ -90,7 +96,7 @@ class Planar3PRR(Planar):
         """l_i for each J_q,i; `determinant_scale` times their product for det J_x."""
         return g.rod_lengths, Planar.determinant_scale(g) * g.rod_lengths[0] * g.rod_lengths[1] * g.rod_lengths[2]
 
-    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Drives, rods and platform."""
         bodies = Bodies(self.inertia.rod_middle)
         slides, ends = self.circles(joints, g)[0], self.platform_points(pose, g)

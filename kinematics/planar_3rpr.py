@@ -12,6 +12,7 @@ from kinematics.geometry import TURN, length
 from kinematics.indices import FviBounds
 from kinematics.planar import Planar, PlanarGeometry, PlanarInertia, triangle
 from kinematics.ranges import JointRanges, Pair
+from kinematics.working_mode import Mode
 
 
 @dataclass(frozen=True)
@@ -58,25 +59,30 @@ class Planar3RPR(Planar):
     @staticmethod
     def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
         """q_i - |A_i B_i|: J_q is the identity, J_x the legs as lines."""
-        return joints - Planar3RPR.inverse_closed_form(pose, g)
+        return joints - Planar3RPR.leg_lengths(pose, g)
 
     @staticmethod
-    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """Unique, as a length is positive; inf where the pose is infinite or a length's square overflows."""
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace, mode: Mode) -> ca.SX:  # noqa: ARG004
+        """Unique, as a length is positive."""
+        return Planar3RPR.leg_lengths(pose, g)
+
+    @staticmethod
+    def leg_lengths(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(3,); inf where the pose is infinite or a length's square overflows."""
         legs = Planar.platform_points(pose, g) - Planar.base_points(g)
         return ca.sqrt(ca.sum1(legs * legs)).T
 
     @staticmethod
     def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """The leg itself: it reaches everything but its own base joint [m]."""
-        return Planar3RPR.inverse_closed_form(pose, g)
+        return Planar3RPR.leg_lengths(pose, g)
 
     @staticmethod
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
         """1 for J_q; `determinant_scale` for det J_x."""
         return ca.SX.ones(3), Planar.determinant_scale(g)
 
-    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Drives that the joints move; platform and half of each leg, the other half staying at its base joint."""
         i, ends, bodies = self.inertia, self.platform_points(pose, g), Bodies(self.inertia.rod_middle)
         bodies.rotors.extend(Rotor(i.drive, joints[k]) for k in range(3))

@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.bodies import Bodies
-from kinematics.geometry import angle, length
+from kinematics.geometry import GeometryRecord, angle, length
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Array
 from kinematics.planar import AZIMUTHS, Planar, PlanarGeometry, PlanarInertia
@@ -55,7 +55,7 @@ class Planar3RRRRanges(JointRanges):
 class Planar3RRR(Planar, RotaryLimbs):
     """Pose [x, y, theta], joints q1..q3, the arms' angles from `zero_angles`.
 
-    Working mode: seen from B_i, the elbow is on the left of the line to A_i; with arms counted from outward, as the
+    Usual branch: seen from B_i, the elbow is on the left of the line to A_i; with arms counted from outward, as the
     defaults are, each elbow lies ahead counter-clockwise and q_i is between 0 and pi around home.
     """
 
@@ -72,6 +72,11 @@ class Planar3RRR(Planar, RotaryLimbs):
         return Limbs(Planar.base_points(g), *radial_directions(g.zero_angles), g.arm_lengths, g.rod_lengths)
 
     @classmethod
+    def usual_branches(cls, home: Array, geometry: GeometryRecord) -> tuple[int, ...]:  # noqa: ARG003
+        """All elbows on the left, wherever the arms are counted from."""
+        return (1, 1, 1)
+
+    @classmethod
     def circles(cls, joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
         """About the elbows."""
         return cls.limbs(g).elbows(joints), g.rod_lengths
@@ -82,7 +87,7 @@ class Planar3RRR(Planar, RotaryLimbs):
         rods = g.rod_lengths[0] * g.rod_lengths[1] * g.rod_lengths[2]
         return g.arm_lengths * g.rod_lengths, Planar.determinant_scale(g) * rods
 
-    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, drives, rods and platform."""
         bodies = self.limb_bodies(pose, joints, g, self.inertia.link_mass, ["platform"] * 3)
         self.platform_bodies(pose, g, payload, bodies)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 import casadi as ca
@@ -17,8 +15,9 @@ from kinematics.geometry import numbers_of
 
 Array = np.ndarray
 Pair = tuple[float, float]
-# Squared sine below which a tilt is rounded off: its cone has a tip without a gradient, where joints often rest.
-_TIP = 1e-16
+# Squared sine of a tilt that is taken for smaller ones, beyond what doubles tell apart from 0 beside an angle of
+# about 1: there the tilt's cone has its tip, without a gradient, and joints often rest in it.
+_TIP = 1e-26
 
 
 @dataclass(frozen=True)
@@ -51,11 +50,6 @@ class JointRanges:
             InvalidValue: naming the field.
         """
         self.limits(count)
-
-    @property
-    def digest(self) -> str:
-        """SHA-256 of the numbers, to tell which ranges a file was made for."""
-        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
 
 
 @dataclass(frozen=True)
@@ -97,13 +91,13 @@ class PassiveJoint(NamedTuple):
     swivels: bool = True
 
     def room(self, limits: Pair) -> list[ca.SX]:
-        """What is left to the limit [rad], each to be at least the margin; up to 1e-8 less within 1e-7 of an axis."""
+        """What is left to the limit [rad], each to be at least the margin; within 1e-13 of an axis 1e-13 less."""
         along = ca.dot(self.axis, self.rod) / self.length
         across = ca.sumsqr(ca.cross(self.axis, self.rod)) / self.length**2
         if self.swivels:
             lean = ca.atan2(along, ca.sqrt(across))
             return [limits[self.end] - lean, limits[self.end] + lean]
-        return [limits[self.end] - ca.atan2(ca.sqrt(across + _TIP), along)]
+        return [limits[self.end] - ca.atan2(ca.sqrt(ca.fmax(across, _TIP)), along)]
 
     def within(self, limits: Pair, margin: ca.SX) -> list[ca.SX]:
         """At least 0 if and only if the room is at least the margin; without an arctangent.

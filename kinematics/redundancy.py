@@ -16,10 +16,11 @@ import numpy as np
 from kinematics.errors import InvalidValue
 from kinematics.interpreter import evaluate
 from kinematics.linear import adjugate, determinant
-from kinematics.mechanism import Array, Build, Mechanism
+from kinematics.mechanism import Array, Mechanism
 from kinematics.model import Model
+from kinematics.programs import Build
 
-_LAST_STEP = 1e-9  # squared by the quadratic convergence, it is below rounding [m]
+_LAST_STEP = 1e-9  # of the robot's size; squared by the quadratic convergence, it is below rounding
 _MOST_STEPS = 60
 _FREE = 1e-12  # a normalised minor or singular value of which rounding is all that is left
 
@@ -95,7 +96,7 @@ def _iterate(robot: Mechanism, pose: Array, measured: Array, weight: Array) -> t
     size = np.ones(n)
     size[list(robot.rotations)] = robot.characteristic_length
     converged, steps, damping = np.zeros(count, bool), np.zeros(count, int), np.zeros(count)
-    program = robot.program("newton", lambda model: _newton(model))
+    program = robot.program(_newton)
     cost, step, _ = evaluate(program, pose, measured, weight, damping[:, None])
     cost, active = cost[:, 0], np.arange(count)
     for _ in range(_MOST_STEPS):
@@ -106,7 +107,7 @@ def _iterate(robot: Mechanism, pose: Array, measured: Array, weight: Array) -> t
         steps[active] += 1
         there = evaluate(program, trial, measured[active], weight[active], damping[active, None])[0][:, 0]
         better = there <= cost[active] * (1 + 1e-12)
-        small = (np.abs(step[active]) * size).max(axis=-1) <= _LAST_STEP
+        small = (np.abs(step[active]) * size).max(axis=-1) <= _LAST_STEP * robot.geometry.size
         done = small & (damping[active] == 0.0) & np.isfinite(there)
         moved = active[better | done]
         pose[moved], cost[moved] = trial[better | done], there[better | done]
@@ -121,7 +122,7 @@ def _iterate(robot: Mechanism, pose: Array, measured: Array, weight: Array) -> t
     return converged & (minimum > _FREE).all(axis=-1), steps
 
 
-def _newton(model: Model) -> Build:
+def _newton(_: Mechanism, model: Model) -> Build:
     """Cost, the damped step, and the Hessian's leading minors, each over the product of its diagonal.
 
     All positive: a minimum; near zero: a direction is free. Where the Hessian is not positive definite, its

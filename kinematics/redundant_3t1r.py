@@ -12,13 +12,13 @@ other direction would be turned with the platform at one end and not at the othe
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import ClassVar
 
 import casadi as ca
 import numpy as np
 from scipy.linalg import block_diag
 
 from kinematics.bodies import Bodies, Particle, Rod, Rotor
+from kinematics.continuation import continued
 from kinematics.indices import FviBounds
 from kinematics.interpreter import evaluate
 from kinematics.mechanism import Array
@@ -26,10 +26,11 @@ from kinematics.model import Model
 from kinematics.ranges import PassiveJoint
 from kinematics.redundancy import BestFit, EncoderCheck, check_encoders, least_squares
 from kinematics.redundant_3t1r_clearance import arm_distances, arms_apart
-from kinematics.redundant_3t1r_forward import candidate_build
+from kinematics.redundant_3t1r_forward import candidates
 from kinematics.redundant_3t1r_geometry import Redundant3T1RGeometry, Redundant3T1RInertia, Redundant3T1RRanges
 from kinematics.redundant_3t1r_singularities import ParallelSingularity, parallel_conditions
 from kinematics.rods import RodLevel, outline
+from kinematics.working_mode import Mode
 
 _LIMBS = 6
 _AHEAD = ca.DM([-0.5, -0.5, 0.5, 0.5, -0.5, -0.5])  # B_i along the platform's x, in units of d
@@ -38,7 +39,8 @@ _SIDE = (1, -1, 1, -1, 1, -1)  # y_1 = y_5 = -y_2 = -y_6, y_3 = -y_4
 _FLOOR = (1, 1, 0, 0, -1, -1)  # z_1 = z_2 = -z_5 = -z_6, z_3 = z_4 = 0
 _PARALLELOGRAMS = (2, 3)
 _OUTER = (0, 1, 4, 5)
-_ROUNDING = 1e-9  # by how much rounding may break (21) [m]
+_ROUNDING = 1e-9  # of the robot's size, by how much rounding may break (21)
+_CLOSES = 1e-6  # of the robot's size, by how much an arm may miss
 
 
 class Redundant3T1R(RodLevel):
@@ -55,7 +57,6 @@ class Redundant3T1R(RodLevel):
     rotations = (3,)
     margins = (*RodLevel.margins, "passive_joint", "clearance")
     mirrors = (("y", "theta"), ("z",))
-    home: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.0, 0.0)
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=1.0, speed=0.5, force=0.5)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta")
     # (51) of Krut et al.: single rods stay, a parallelogram gives its rods' mean and, last, their difference.
@@ -67,6 +68,11 @@ class Redundant3T1R(RodLevel):
     def characteristic_length(self) -> float:
         """d / 2 [m], as in the paper's W."""
         return self.geometry.platform_length / 2
+
+    @staticmethod
+    def default_home(geometry: Redundant3T1RGeometry) -> tuple[float, ...]:  # noqa: ARG004
+        """Midway between all rails; where along them makes no difference."""
+        return 0.0, 0.0, 0.0, 0.0
 
     # Points.
 
@@ -105,10 +111,15 @@ class Redundant3T1R(RodLevel):
         return platform[0, :].T, ca.sum1(from_rail * from_rail).T
 
     @staticmethod
-    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(7): every slide behind its platform point, the minus of (5)."""
-        x, square = Redundant3T1R._across(pose, g)
-        return x - ca.sqrt(Redundant3T1R.arm_lengths(g) ** 2 - square)
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace, mode: Mode) -> ca.SX:
+        """(7): usually every slide is behind its platform point, the minus of (5)."""
+        roots = Redundant3T1R.limb_roots(pose, g)
+        return Redundant3T1R._across(pose, g)[0] - ca.vertcat(*(b * roots[i] for i, b in enumerate(mode.branches)))
+
+    @classmethod
+    def limb_roots(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """How far each slide is from the foot of its platform point."""
+        return ca.sqrt(cls.arm_lengths(g) ** 2 - cls._across(pose, g)[1])
 
     @staticmethod
     def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
@@ -146,27 +157,17 @@ class Redundant3T1R(RodLevel):
                 rods.append((lengths[limb] ** 2 - ca.sumsqr(rod)) / (2 * lengths[limb]))
         return ca.vertcat(*rods)
 
-    @classmethod
-    def internal_determinant_symbolic(cls) -> ca.SX:
+    def internal_determinant_symbolic(self) -> ca.SX:
         """(n_3 x n_4) . e_z: det J_int over the square of the parallelograms' width."""
-        arms = cls._directions_symbolic()
+        arms = _directions(self.model())
         return ca.cross(arms[:, 2], arms[:, 3])[2]
-
-    @classmethod
-    def _directions_symbolic(cls) -> ca.SX:
-        """n_i (3, 6) at a pose: the translation's part of J_x."""
-        return cls.model().j_x_at_pose[:, :3].T
 
     def parallel_singularity(self, pose: Array) -> ParallelSingularity:
         """How far the pose is from a parallel singularity."""
-
-        def build(model: Model) -> list[ca.SX]:
-            return parallel_conditions(self._directions_symbolic(), model.pose[3])
-
-        translation, rotation = self._evaluate("parallel", build, pose)
+        translation, rotation = self._evaluate(_parallel_conditions, pose)
         return ParallelSingularity(translation[..., 0], rotation[..., 0])
 
-    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float) -> Bodies:
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Slides, rods, platform and payload."""
         i, bodies = self.inertia, Bodies(self.inertia.rod_middle)
         rails, platform = self.rail_points(joints, g), self.platform_points(pose, g)
@@ -195,23 +196,18 @@ class Redundant3T1R(RodLevel):
         lines["platform"] = ca.horzcat(platform[:, 0], middle, platform[:, 2], middle, platform[:, 4])
         return lines
 
-    @classmethod
-    def _arm_ends(cls, m: Model) -> list[ca.SX]:
-        """A_i and B_i (3, 6) at a pose."""
-        return [m.at_pose(cls.rail_points(m.joints, m.g)), cls.platform_points(m.pose, m.g)]
-
     def arm_distances(self, pose: Array, rods: bool = False) -> dict[tuple[int, int], Array]:
         """{(i, j): (...,) metres} between the axes of arms, from 1, that share no platform point; NaN out of reach.
 
         Args:
             rods: take arms 3 and 4 as the two rods that they are, not as the middle line A_i B_i.
         """
-        rails, platform = self._evaluate("arms", self._arm_ends, pose)
+        rails, platform = self._evaluate(_arm_ends, pose)
         return arm_distances(rails, platform, self.geometry.parallelogram_width if rods else 0.0)
 
     def segment_pairs(self) -> list[tuple[ca.SX, ca.SX]]:
         """The arms' middle lines at a pose, where two share no platform point: the clearance of `arm_distances`."""
-        return arms_apart(*self._arm_ends(self.model()))
+        return arms_apart(*_arm_ends(self, self.model()))
 
     def arm_clearance(self, pose: Array, rods: bool = False) -> Array:
         """(...,) the smallest of `arm_distances` [m]; the arms' thickness is still to be taken off."""
@@ -221,25 +217,35 @@ class Redundant3T1R(RodLevel):
 
     def _candidates(self, joints: Array) -> tuple[Array, Array, Array]:
         """S_1 to S_4 (..., 4, 4), worst error of a length (..., 4) and smallest x_bi - x_i (..., 4), both in metres."""
-        poses, errors, ahead = evaluate(self.program("candidates", lambda _: candidate_build(type(self))), joints)
+        poses, errors, ahead = evaluate(self.program(candidates), joints)
         return poses, errors, ahead
 
-    def forward(self, joints: Array, tolerance: float = 1e-6) -> Array:
-        """(..., 6) -> (..., 4), the candidate of (20) that has every slide behind its platform point, (21).
+    def working_forward(self, joints: Array) -> Array:
+        """(..., 6) -> (..., 4), the candidate of (20) with every slide behind its platform point, (21), or ahead.
 
-        Args:
-            tolerance: by how much an arm or the platform may be too long or too short [m]. Joints that no pose has give
-                NaN; infinity gives what the paper's model gives, which never looks at x_6; `forward_least_squares`
-                weighs all six.
+        With slides on both sides two candidates may meet, and rounding would part them: continued from home.
         """
-        poses, errors, ahead = self._candidates(self._joints(joints))
+        if len(set(self.mode.branches)) > 1:
+            return continued(self, self._joints(joints), self.home)
+        return self._chosen(self._joints(joints), _CLOSES * self.geometry.size)
+
+    def paper_forward(self, joints: Array) -> Array:
+        """(..., 6) -> (..., 4) what the paper's model gives, which never looks at x_6, to joints of no pose too.
+
+        `forward_least_squares` weighs all six.
+        """
+        return self._chosen(self._joints(joints), np.inf)
+
+    def _chosen(self, joints: Array, tolerance: float) -> Array:
+        """The best candidate; NaN where an arm or the platform would be too long or too short by more than this [m]."""
+        poses, errors, ahead = self._candidates(joints)
         score = np.fmax(np.where(np.isnan(errors), np.inf, errors), -ahead)
         best = score.argmin(axis=-1)[..., None]
         result = np.take_along_axis(poses, best[..., None], axis=-2)[..., 0, :]
         error, behind = (np.take_along_axis(v, best, axis=-1) for v in (errors, ahead))
-        return np.where((error <= tolerance) & (behind >= -_ROUNDING), result, np.nan)
+        return np.where((error <= tolerance) & (behind >= -_ROUNDING * self.geometry.size), result, np.nan)
 
-    def assembly_modes(self, joints: Array, tolerance: float = 1e-6) -> Array:
+    def assembly_modes(self, joints: Array) -> Array:
         """(6,) -> (k, 4), every real pose in which all six arms close; the working one first, k = 0 if there is none.
 
         The paper's four candidates close arms 1, 2 and 5 (and 3, 4 only at the right distance from B_1): mostly one of
@@ -247,7 +253,7 @@ class Redundant3T1R(RodLevel):
         """
         joints = self._one(joints)
         poses, errors, ahead = self._candidates(joints)
-        closing = np.flatnonzero(errors <= tolerance)
+        closing = np.flatnonzero(errors <= _CLOSES * self.geometry.size)
         return poses[closing[np.argsort(-ahead[closing], kind="stable")]]
 
     def forward_least_squares(self, joints: Array, start: Array | None = None) -> BestFit:
@@ -260,7 +266,7 @@ class Redundant3T1R(RodLevel):
         """
         joints = self._joints(joints)
         if start is None:
-            start = self.forward(joints, tolerance=np.inf)
+            start = self.paper_forward(joints)
             unreached = np.isnan(self.inverse(start)).any(axis=-1, keepdims=True)
             start = np.where(unreached, self._home_near(joints), start)
         return least_squares(self, joints, self._poses(start))
@@ -268,7 +274,7 @@ class Redundant3T1R(RodLevel):
     def _home_near(self, joints: Array) -> Array:
         """Home, moved along x to where most of the joints say."""
         home = np.tile(self.home, (*joints.shape[:-1], 1))
-        home[..., 0] += np.median(joints - self.inverse(np.asarray(self.home)), axis=-1)
+        home[..., 0] += np.median(joints - self.inverse(self.home), axis=-1)
         return home
 
     def check_encoders(self, joints: Array, accuracy: float = 1e-6) -> EncoderCheck:
@@ -288,3 +294,17 @@ class Redundant3T1R(RodLevel):
         joints = self._joints(joints)
         starts = self._home_near(joints)[..., None, :] + np.outer([-1.2, 0.0, 1.2], np.eye(4)[3])
         return check_encoders(self, joints, self.forward_least_squares(joints), starts, accuracy)
+
+
+def _directions(model: Model) -> ca.SX:
+    """n_i (3, 6) at a pose: the translation's part of J_x."""
+    return model.j_x_at_pose[:, :3].T
+
+
+def _parallel_conditions(_: Redundant3T1R, model: Model) -> list[ca.SX]:
+    return parallel_conditions(_directions(model), model.pose[3])
+
+
+def _arm_ends(robot: Redundant3T1R, m: Model) -> list[ca.SX]:
+    """A_i and B_i (3, 6) at a pose."""
+    return [m.at_pose(robot.rail_points(m.joints, m.g)), robot.platform_points(m.pose, m.g)]

@@ -10,19 +10,23 @@ B_1 is the intersection of regular spheres wherever all arms reach: n_1 . (n_2 x
 
 from __future__ import annotations
 
-from functools import cache
 from types import SimpleNamespace
 
 import casadi as ca
 
-from kinematics.mechanism import Build, Mechanism
+from kinematics.mechanism import Mechanism
+from kinematics.model import Model
+from kinematics.programs import Build
+from kinematics.rounding import not_below_zero
 
 
-@cache
-def candidate_build(robot: type[Mechanism]) -> Build:
-    """From the joints: the poses (4, 4), one a row; each one's worst error of a length (4,); least x_bi - x_i (4,)."""
-    model = robot.model()
+def candidates(robot: Mechanism, model: Model) -> Build:
+    """From the joints: the poses (4, 4), one a row; each one's worst error of a length (4,); least x_bi - x_i (4,).
+
+    The last is reversed for a limb whose slide is ahead of its platform point in the working mode.
+    """
     poses, ahead, excess = candidate_poses(model.joints, model.g)
+    ahead = ca.diag(ca.DM(model.mode.branches)) @ ahead
     columns = range(poses.shape[1])
     gaps = [ca.vertcat(robot.closure(poses[:, k], model.joints, model.g), excess[k]) for k in columns]
     errors = ca.vertcat(*(ca.mmax(ca.fabs(gap)) for gap in gaps))
@@ -83,4 +87,5 @@ def _line_and_sphere(line: list[tuple[ca.SX, ca.SX]], centre: list[ca.SX], squar
         a += slope**2
         half_b += slope * (constant - middle)
         c += (constant - middle) ** 2
-    return (-half_b + branch * ca.sqrt(half_b**2 - a * c)) / a
+    inside = not_below_zero(half_b**2 - a * c, half_b**2 + ca.fabs(a * c))
+    return (-half_b + branch * ca.sqrt(inside)) / a

@@ -16,6 +16,7 @@ import numpy as np
 
 from kinematics.indices import FviBounds
 from kinematics.mechanism import Array, Mechanism
+from kinematics.model import Model
 
 
 class BlockTriangular(NamedTuple):
@@ -40,33 +41,31 @@ class RodLevel(Mechanism):
     def rod_closure(pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
         """(k,) each rod's own `closure` after a small displacement in the directions of `rod_velocities`."""
 
-    @classmethod
     @abstractmethod
-    def internal_determinant_symbolic(cls) -> ca.SX:
+    def internal_determinant_symbolic(self) -> ca.SX:
         """det J_int, up to a sign, over what makes it dimensionless in [-1, 1]."""
 
-    @classmethod
-    def rod_system_symbolic(cls) -> tuple[ca.SX, ca.SX]:
+    def rod_system_symbolic(self) -> tuple[ca.SX, ca.SX]:
         """J_l (k, m) and J_r (k, v) of (49) at a pose, by differentiation of the rods' lengths."""
-        model = cls.model()
-        displacement = ca.SX.sym("displacement", len(cls.rod_velocities))
-        rods = cls.rod_closure(model.pose, displacement, model.joints, model.g)
+        model = self.model()
+        displacement = ca.SX.sym("displacement", len(self.rod_velocities))
+        rods = self.rod_closure(model.pose, displacement, model.joints, model.g)
         j_l, j_r = ca.jacobian(rods, model.joints), -ca.jacobian(rods, displacement)
         j_l, j_r = (ca.substitute(j, displacement, 0 * displacement) for j in (j_l, j_r))
         return model.at_pose(j_l), model.at_pose(j_r)
 
     def rod_system(self, pose: Array) -> tuple[Array, Array]:
         """J_l (..., k, m) and J_r (..., k, v) with J_l q' = J_r v; (49). Redundant drives make k > v."""
-        j_l, j_r = self._evaluate("rods", lambda _: list(self.rod_system_symbolic()), pose)
+        j_l, j_r = self._evaluate(_rod_system, pose)
         return j_l, j_r
 
     def block_triangular(self, pose: Array) -> BlockTriangular:
         """The system of `rod_system` after (51) and (52)."""
-        return BlockTriangular(*self._evaluate("blocks", lambda _: list(self._blocks_symbolic()), pose))
+        return BlockTriangular(*self._evaluate(_blocks, pose))
 
     def internal_determinant(self, pose: Array) -> Array:
         """(...,) det J_int, dimensionless in [-1, 1], sign kept; 0 is an internal singularity."""
-        return self._evaluate("internal", lambda _: [self.internal_determinant_symbolic()], pose)[0][..., 0]
+        return self._evaluate(_internal_determinant, pose)[0][..., 0]
 
     def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
         """Adds |det J_int|, normalised."""
@@ -74,13 +73,21 @@ class RodLevel(Mechanism):
             return ca.fabs(self.internal_determinant_symbolic())
         return super().margin_components(name, bounds, characteristic_length)
 
-    @classmethod
-    def _blocks_symbolic(cls) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
-        j_l, j_r = cls.rod_system_symbolic()
-        m, n = len(cls.joint_names), len(cls.pose_names)
-        left = ca.DM(cls.row_combinations) @ j_l
-        right = ca.DM(cls.row_combinations) @ j_r @ ca.DM(cls.column_combinations)
-        return left[:m, :], right[:m, :n], right[:m, n:], right[m:, n:]
+
+def _rod_system(robot: RodLevel, _: Model) -> list[ca.SX]:
+    return list(robot.rod_system_symbolic())
+
+
+def _internal_determinant(robot: RodLevel, _: Model) -> list[ca.SX]:
+    return [robot.internal_determinant_symbolic()]
+
+
+def _blocks(robot: RodLevel, _: Model) -> list[ca.SX]:
+    j_l, j_r = robot.rod_system_symbolic()
+    m, n = len(robot.joint_names), len(robot.pose_names)
+    left = ca.DM(robot.row_combinations) @ j_l
+    right = ca.DM(robot.row_combinations) @ j_r @ ca.DM(robot.column_combinations)
+    return [left[:m, :], right[:m, :n], right[:m, n:], right[m:, n:]]
 
 
 def outline(start: ca.SX, end: ca.SX, half: ca.SX) -> ca.SX:

@@ -1,12 +1,14 @@
 """Limbs of a rotary arm and a rod: what Heli4, Delta, Par4, Hexa and 3-RRR share.
 
 The arm turns about a fixed axis and carries A = P + L (zero cos q + quarter sin q); the rod holds |A - B| = l. Squaring
-gives M cos q + N sin q = G, expressions (10)-(12) of Krut et al. 2006, with two roots; the elbow is kept on the side of
-the line from B to P towards which a quarter turn from `zero` leads: outside, where `quarter` points outward.
+gives M cos q + N sin q = G, expressions (10)-(12) of Krut et al. 2006, with two roots, the elbow on either side of the
+line from B to P. Usual is the side on which the elbow is further along `quarter` when the robot is at home: outside,
+where `quarter` points outward, whether the platform hangs below the drives or stands above them.
 """
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,10 +16,15 @@ from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import casadi as ca
+import numpy as np
 
 from kinematics.bodies import Bodies, InertiaRecord, Particle, Rod, Rotor
-from kinematics.mechanism import Mechanism
+from kinematics.geometry import GeometryRecord
+from kinematics.mechanism import Array, Mechanism
 from kinematics.ranges import Pair, PassiveJoint, RodRanges
+from kinematics.working_mode import Mode
+
+_LEVEL = 1e-9  # of the robot's size: a platform point no further from the drive's level is level with it
 
 
 class Limbs(NamedTuple):
@@ -52,16 +59,21 @@ class Limbs(NamedTuple):
         right = self.rod**2 - ca.sum1(to_actuator * to_actuator).T - self.arm**2
         return m, n, right, ca.sqrt(m * m + n * n - right * right)
 
-    def inverse(self, platform: ca.SX) -> ca.SX:
-        """(m,) joints in (-pi/2, 3 pi/2]: the cut lies where an arm points against `quarter`."""
-        m, n, right, root = self.terms(platform)
-        return ca.pi / 2 + ca.atan2(n * root - m * right, n * right + m * root)
+    def inverse(self, platform: ca.SX, mode: Mode) -> ca.SX:
+        """(m,) joints of a working mode."""
+        cosines, sines, _ = self._scaled(platform, mode)
+        return mode.angles(cosines, sines)
 
-    def cosines_and_sines(self, platform: ca.SX) -> tuple[ca.SX, ca.SX]:
+    def cosines_and_sines(self, platform: ca.SX, mode: Mode) -> tuple[ca.SX, ca.SX]:
         """Both from the root that is kept, without an angle."""
+        cosines, sines, square = self._scaled(platform, mode)
+        return cosines / square, sines / square
+
+    def _scaled(self, platform: ca.SX, mode: Mode) -> tuple[ca.SX, ca.SX, ca.SX]:
+        """(m,) cosines and sines times M^2 + N^2, and that."""
         m, n, right, root = self.terms(platform)
-        square = m * m + n * n
-        return (m * right - n * root) / square, (n * right + m * root) / square
+        root = ca.vertcat(*(branch * root[i] for i, branch in enumerate(mode.branches)))
+        return m * right - n * root, n * right + m * root, m * m + n * n
 
     def axes(self) -> ca.SX:
         """(3, m) unit directions about which the arms turn, and along which their rods' joints lie."""
@@ -93,6 +105,13 @@ def central_limbs(g: SimpleNamespace) -> Limbs:
     """Drives on a circle about e_z, and arms in vertical planes through it."""
     radial, _ = radial_directions(g.azimuths)
     return upright_limbs(g.base_radius * radial, radial, g)
+
+
+def height_in_reach(base_radius: float, platform_radius: float, arm: float, rod: float) -> float:
+    """How far below its drives' plane a platform on the axis is in the middle of its reach [m]."""
+    aside = base_radius - platform_radius
+    lowest, highest = ((rod + side * arm) ** 2 - aside**2 for side in (1, -1))
+    return (math.sqrt(max(lowest, 0.0)) + math.sqrt(max(highest, 0.0))) / 2
 
 
 def columns(point: ca.SX, count: int) -> ca.SX:
@@ -173,14 +192,28 @@ class RotaryLimbs(Mechanism):
         return (ca.sum1(rods * rods).T - cls.limbs(g).rod ** 2) / 2
 
     @classmethod
-    def inverse_closed_form(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """Elbows out."""
-        return cls.limbs(g).inverse(cls.platform_points(pose, g))
+    def inverse_closed_form(cls, pose: ca.SX, g: SimpleNamespace, mode: Mode) -> ca.SX:
+        """Of each limb."""
+        return cls.limbs(g).inverse(cls.platform_points(pose, g), mode)
 
     @classmethod
-    def joint_cosines_and_sines(cls, pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+    def joint_cosines_and_sines(cls, pose: ca.SX, g: SimpleNamespace, mode: Mode) -> tuple[ca.SX, ca.SX]:
         """Of the inverse model."""
-        return cls.limbs(g).cosines_and_sines(cls.platform_points(pose, g))
+        return cls.limbs(g).cosines_and_sines(cls.platform_points(pose, g), mode)
+
+    @classmethod
+    def usual_branches(cls, home: Array, geometry: GeometryRecord) -> tuple[int, ...]:
+        """Elbows out: +1 where the drive is ahead of the platform's point along `zero`, or level with it; else -1."""
+        pose, (symbols, g) = ca.SX.sym("pose", len(cls.pose_names)), cls.Geometry.symbols()
+        limbs = cls.limbs(g)
+        ahead = ca.sum1((limbs.actuators - cls.platform_points(pose, g)) * limbs.zero).T
+        found = np.array(ca.Function("ahead", [pose, symbols], [ahead])(home, geometry.vector()))[:, 0]
+        return tuple(-1 if v < -_LEVEL * geometry.size else 1 for v in found.tolist())
+
+    @classmethod
+    def limb_roots(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """Of `Limbs.terms`."""
+        return cls.limbs(g).terms(cls.platform_points(pose, g))[3]
 
     @classmethod
     def reach(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:

@@ -13,8 +13,10 @@ import casadi as ca
 import numpy as np
 
 from kinematics.bodies import Bodies, Particle
+from kinematics.continuation import continued
 from kinematics.gough_stewart_forward import ForwardSolution, solve_forward
 from kinematics.mechanism import Array, Mechanism
+from kinematics.orientation import angles, rotation, turn
 from kinematics.shapes import together
 
 
@@ -32,11 +34,6 @@ class SixLegs(Mechanism):
         """Mean distance of the B_i from their centroid [m]."""
         points = np.array(self.geometry.platform_points)
         return float(np.linalg.norm(points - points.mean(axis=0), axis=1).mean())
-
-    @property
-    @abstractmethod
-    def initial_pose(self) -> Array:
-        """(6,) where `forward` starts unless told otherwise."""
 
     @abstractmethod
     def leg_errors(self, pose: Array, joints: Array) -> tuple[Array, Array]:
@@ -65,24 +62,31 @@ class SixLegs(Mechanism):
         )
         return ca.diagcat(ca.SX.eye(3), rates)
 
-    def platform_bodies(self, pose: ca.SX, points: ca.SX, payload: float, bodies: Bodies) -> None:
+    def platform_bodies(self, pose: ca.SX, points: ca.SX, payload: float | ca.SX, bodies: Bodies) -> None:
         """Adds the platform, in six equal particles at the B_i (3, 6), and the payload at the tool point."""
         share = self.inertia.platform_mass / 6
         bodies.particles.extend(Particle("platform", share, points[:, i]) for i in range(6))
         bodies.particles.append(Particle("platform", payload, pose[:3]))
 
-    def forward(self, joints: Array, start: Array | None = None) -> Array:
-        """(..., 6) -> (..., 6): Newton's method from a start near, NaN where it did not converge; [8.6.4.2].
+    @staticmethod
+    def moved(pose: Array, twist: Array) -> Array:
+        """(k, 6) poses after small displacements (k, 6), the turn about axes of the base's frame."""
+        turned = turn(twist[:, 3:]) @ rotation(pose[:, 3:])
+        return np.concatenate([pose[:, :3] + twist[:, :3], angles(turned)], axis=1)
 
-        From the default start a far pose may end in another assembly mode; give `start` where the pose is about known.
+    def working_forward(self, joints: Array) -> Array:
+        """(..., 6) -> (..., 6): continued from home."""
+        return continued(self, self._joints(joints), self.home)
+
+    def newton(self, joints: Array, start: Array | None = None, iterations: int = 30) -> ForwardSolution:
+        """Newton's method from a start near, [8.6.4.2]: where it converged, in how many steps and with which error.
+
+        It may end in any assembly mode; `forward` stays in one.
 
         Args:
-            joints: [m or rad].
-            start: (..., 6) the current or last pose; `initial_pose` if not given.
+            joints: (..., 6) [m or rad].
+            start: (..., 6); home if not given.
+            iterations: the most steps.
         """
-        return self.solve_forward(joints, start).pose
-
-    def solve_forward(self, joints: Array, start: Array | None = None, iterations: int = 30) -> ForwardSolution:
-        """As `forward`, and says where it converged, in how many steps and with which error."""
-        begin = self._poses(self.initial_pose if start is None else start)
+        begin = self._poses(self.home if start is None else start)
         return solve_forward(self, *together(self._joints(joints), begin), iterations)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from studies.errors import KeyPath
-from studies.hardware import hardware_faults, hardware_tables, subtable
+from studies.hardware import hardware_faults, hardware_tables, joint_unit, subtable
 from studies.mechanisms import GeometryField, geometry_fields, shape
 from studies.schema import (
     REGION_KINDS,
@@ -45,6 +45,7 @@ def study_table(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> Table:
         {
             "geometry": Table({name: _dimensions(field) for name, field in fields.items()}),
             **hardware_tables(mechanism),
+            "home": _home_table(mechanism),
             "region": _region_table(mechanism, raw.get("region")),
             "optimise": table_of(Optimise).updated(optimise),
             "certify": table_of(Certify).updated({"margins": Key("a list out of", choices=mechanism.margins)}),
@@ -62,7 +63,7 @@ def _trajectory_table(pose_names: Sequence[str], joints: int) -> Table:
         "tilt": not {"roll", "pitch"} <= set(pose_names),
     }
     cycle = Table({name: key for name, key in table_of(Cycle).keys.items() if not lacking.get(name)})
-    coordinates = {name: Key("a finite number", _pose_dimension(name)) for name in pose_names}
+    coordinates = {name: Key("a finite number", _pose_dimension(name), place=True) for name in pose_names}
     waypoint = table_of(Waypoint, rows=True).updated(coordinates)
     path = table_of(WaypointPath).updated({"waypoint": waypoint})
     trajectory = table_of(Trajectory).updated({"path": path})
@@ -81,6 +82,9 @@ def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyP
             yield ("geometry", name)
     yield from hardware_faults(data, mechanism)
     yield from _uncounted(subtable(data, "trajectory"), len(mechanism.joint_names))
+    joints = subtable(data, "home").get("joints")
+    if isinstance(joints, tuple) and len(joints) != len(mechanism.joint_names):
+        yield ("home", "joints")
     if isinstance(data.get("region"), dict):
         yield from _region_faults(data["region"], mechanism)
     optimise = subtable(data, "optimise")
@@ -132,6 +136,15 @@ def _region_faults(region: Mapping[str, Any], mechanism: type[Mechanism]) -> Ite
                 yield ("region", name)
 
 
+def _home_table(mechanism: type[Mechanism]) -> Table:
+    count = len(mechanism.joint_names)
+    joints = Key(f"a finite number for each of {count} joints", joint_unit(mechanism), place=True)
+    return Table(
+        {name: Key("a finite number", _pose_dimension(name), place=True) for name in mechanism.pose_names}
+        | {"joints": joints}
+    )
+
+
 def _region_table(mechanism: type[Mechanism], region: object) -> Table:
     kind = region.get("kind") if isinstance(region, dict) else None
     own = table_of(BoxRegion if kind == "box" else CylinderRegion)
@@ -146,7 +159,7 @@ def _coordinates(mechanism: type[Mechanism], kind: object) -> tuple[str, ...]:
 
 def _coordinate(mechanism: type[Mechanism], name: str) -> Key:
     reach = ", at most a turn apart" if _within_a_turn(mechanism, name) else ""
-    return Key(f"a number, or low < high{reach}", _pose_dimension(name))
+    return Key(f"a number, or low < high{reach}", _pose_dimension(name), place=True)
 
 
 def _within_a_turn(mechanism: type[Mechanism], name: str) -> bool:
@@ -160,12 +173,16 @@ def _pose_dimension(name: str) -> Dimension:
 def _dimensions(field: GeometryField) -> Key:
     count = " x ".join(map(str, field.shape)) or "a"
     plural = "s" if field.shape else ""
-    return Key(f"{count} finite number{plural}{_condition(field)}", Dimension(field.dimension))
+    return Key(f"{count} finite number{plural}{_condition(field)}", Dimension(field.dimension), place=_is_place(field))
 
 
 def _bounds(field: GeometryField) -> Key:
-    pairs = f", a pair for each of {math.prod(field.shape)} entries" if field.shape else ""
-    return Key(f"low < high{_condition(field)}{pairs}", Dimension(field.dimension))
+    pairs = f", one list of {math.prod(field.shape)} such pairs, entry by entry" if field.shape else ""
+    return Key(f"low < high{_condition(field)}{pairs}", Dimension(field.dimension), place=_is_place(field))
+
+
+def _is_place(field: GeometryField) -> bool:
+    return field.dimension == Dimension.LENGTH and field.minimum is None
 
 
 def _condition(field: GeometryField) -> str:

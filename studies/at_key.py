@@ -7,12 +7,13 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from kinematics import InvalidValue, LinkwrightError, UnreachablePose
-from studies.errors import KeyPath, Problem, StudyError, dotted, spelled
+from studies.errors import ApproachFailed, HomeOutOfReach, KeyPath, Problem, StudyError, dotted, spelled
 from studies.toml_file import TomlFile, read_toml
 from trajectory import LimitsExceeded, PathBeyondLimit, PathRefused, RoughPath, TimingFailed
 
 _RECORDS: dict[str, KeyPath] = {
     "Limits": ("trajectory", "limits"),
+    "Trajectory": ("trajectory",),
     "Drive": ("trajectory", "drive"),
     "DriveTrain": ("inertia", "drive_train"),
 }
@@ -39,6 +40,11 @@ def told_at_key(study_file: Path) -> Iterator[None]:
     """
     try:
         yield
+    except ApproachFailed as error:
+        file = read_toml(study_file)
+        raise StudyFailed(file, ("trajectory", "approach"), error) from error
+    except HomeOutOfReach as error:
+        raise _of_home(read_toml(study_file), error) from error
     except PathBeyondLimit as error:
         file = read_toml(study_file)
         raise StudyFailed(file, _spelling(file, ("trajectory", "limits", error.limit)), error) from error
@@ -49,8 +55,8 @@ def told_at_key(study_file: Path) -> Iterator[None]:
                 raise StudyError([problem]) from error
             if not error.what.startswith("path "):
                 raise
-        at = "limits" if isinstance(error, _OF_THE_LIMITS) else travelled(file)
-        raise StudyFailed(file, ("trajectory", at), error) from error
+        at_limits = isinstance(error, _OF_THE_LIMITS)
+        raise StudyFailed(file, ("trajectory", "limits") if at_limits else travelled(file), error) from error
 
 
 def refused_field(file: TomlFile, error: InvalidValue, why: str = "") -> Problem | None:
@@ -76,6 +82,13 @@ def _spelling(file: TomlFile, path: KeyPath) -> KeyPath:
     return path if path in file.lines else next(known, path)
 
 
-def travelled(file: TomlFile) -> str:
-    """The key under `trajectory` of what is travelled."""
-    return "cycle" if ("trajectory", "cycle") in file.lines else "path"
+def _of_home(file: TomlFile, error: HomeOutOfReach) -> StudyError:
+    given = next((path for path in file.lines if path[0] == "home"), None)
+    found = spelled(file.value(given)) if given else f"none, so the default {error.shown}"
+    return StudyError([file.problem(given or ("home",), found, f"a home in reach ({error.cause})")])
+
+
+def travelled(file: TomlFile) -> KeyPath:
+    """The key of what is travelled; the region's where there is no such key."""
+    known: list[KeyPath] = [("trajectory", name) for name in ("cycle", "path")]
+    return next((key for key in known if key in file.lines), ("region",))

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from design import Certificate, Region, best_bound, certify, replay, worst_poses
+from design.budget import Budget
 from design.nlp import Problem
 from design.search import WorstPoses
-from design.synthesis import Progress
 from kinematics import Mechanism
 from kinematics.errors import InvalidValue, LinkwrightError
 from kinematics.shown import rounded_down
 from studies import setup
 from studies.schema import Study
+from studies.stages import Progress
 
 
 @dataclass(frozen=True)
@@ -68,15 +69,8 @@ class Question:
         return {"bounds": self.problem.fvi_bounds, "characteristic_length": self.problem.characteristic_length}
 
     def claims(self) -> tuple[Claim, ...]:
-        """The margins that the study names; else each required one, and the objective at its best."""
-        margins = self.study.certify.margins
-        if margins is None:
-            margins = tuple(dict.fromkeys([*(r.margin for r in self.problem.requirements), self.problem.objective]))
-        return tuple(self._claim(margin) for margin in margins)
-
-    def _claim(self, margin: str) -> Claim:
-        bounds = [r.at_least for r in self.problem.requirements if r.margin == margin]
-        return Claim(margin, max(bounds, default=None), best=not bounds or margin == self.problem.objective)
+        """All that the study claims."""
+        return claims_of(self.study, self.problem)
 
     def only(self, margin: str | None, at_least: float | None) -> tuple[Claim, ...]:
         """The study's claims, or the one that is asked instead.
@@ -94,19 +88,27 @@ class Question:
             if not math.isfinite(at_least):
                 raise InvalidValue("--at-least", at_least, "a finite number")
             return (Claim(margin, at_least, best=False),)
-        return (self._claim(margin),)
+        return (_claim(self.problem, margin),)
 
     def worst(self, margin: str) -> WorstPoses:
         """What a dense search finds."""
         return worst_poses(self.robot, self.region, margin, about=self.study.dense_sample, **self.measure)
 
-    def prove(self, claim: Claim, worst: WorstPoses | None, known: Certificate | None, progress: Progress) -> Proof:
-        """Answer a claim.
+    def prove(
+        self,
+        claim: Claim,
+        worst: WorstPoses | None,
+        known: Certificate | None,
+        progress: Progress,
+        seconds: float = math.inf,
+    ) -> Proof:
+        """Answer a claim; one that is not decided in its time stays undecided.
 
         Args:
             worst: what a dense search found; None to search now.
             known: a certificate that is replayed instead of a search for another where it proves the claim.
             progress: told a line of text at each step.
+            seconds: that the proof may take.
         """
         if worst is None:
             progress(f"worst poses of {claim.margin}")
@@ -115,7 +117,7 @@ class Question:
         if known is not None and self._stands(known, claim):
             certificate = known
         else:
-            certificate = self._certificate(claim, worst.value, progress)
+            certificate = self._certificate(claim, worst.value, progress, seconds)
         seconds, sampled = time.perf_counter() - started, worst.value
         if certificate.counterexample is not None:
             found = float(self.robot.margin(claim.margin, certificate.counterexample, *self.measure.values()))
@@ -136,17 +138,35 @@ class Question:
             return False
         return known.status == "proved"
 
-    def _certificate(self, claim: Claim, worst: float, progress: Progress) -> Certificate:
-        """A required bound within the tolerance of the worst case is the best, too; 0 is tried where none is proved."""
-        asked = self.study.certify
+    def _certificate(self, claim: Claim, worst: float, progress: Progress, seconds: float) -> Certificate:
+        """A required bound within the tolerance of the worst case is the best, too; 0 is tried where none is proved.
+
+        The best bound has half of the time where it may have to be followed by the required one.
+        """
+        asked, budget = self.study.certify, Budget(seconds)
         search: dict[str, Any] = self.measure | {"most_boxes": asked.most_boxes, "progress": progress}
         required, tolerance = claim.at_least, asked.tolerance * abs(worst)
         near = required is not None and worst - required <= tolerance
         if claim.best and not near and 0.0 < tolerance < math.inf:
-            best = best_bound(self.robot, self.region, claim.margin, tolerance, **search)
+            share = budget.share(1 if required is None else 2).seconds
+            best = best_bound(self.robot, self.region, claim.margin, tolerance, seconds=share, **search)
             if best is not None and (required is None or best.certificate.at_least >= required):
                 return best.certificate
-        return certify(self.robot, self.region, claim.margin, at_least=required or 0.0, **search)
+        left = budget.share(1).seconds
+        return certify(self.robot, self.region, claim.margin, at_least=required or 0.0, seconds=left, **search)
+
+
+def claims_of(study: Study, problem: Problem) -> tuple[Claim, ...]:
+    """The margins that the study names; else each required one, and the objective at its best."""
+    margins = study.certify.margins
+    if margins is None:
+        margins = tuple(dict.fromkeys([*(r.margin for r in problem.requirements), problem.objective]))
+    return tuple(_claim(problem, margin) for margin in dict.fromkeys(margins))
+
+
+def _claim(problem: Problem, margin: str) -> Claim:
+    bounds = [r.at_least for r in problem.requirements if r.margin == margin]
+    return Claim(margin, max(bounds, default=None), best=not bounds or margin == problem.objective)
 
 
 def question_of(study: Study, robot: Mechanism) -> Question:
@@ -157,7 +177,24 @@ def question_of(study: Study, robot: Mechanism) -> Question:
 def prove_all(
     question: Question, worst: Mapping[str, WorstPoses], known: Mapping[str, Certificate], progress: Progress
 ) -> tuple[Proof, ...]:
-    """Every claim of the study; `worst` and `known` by margin, as far as there are any."""
-    return tuple(
-        question.prove(claim, worst.get(claim.margin), known.get(claim.margin), progress) for claim in question.claims()
-    )
+    """Every claim of the study; `worst` and `known` by margin, as far as there are any.
+
+    What the budget has left is shared by the claims that are left.
+    """
+    return prove_claims(question, question.claims(), worst, known, progress)
+
+
+def prove_claims(
+    question: Question,
+    claims: Sequence[Claim],
+    worst: Mapping[str, WorstPoses],
+    known: Mapping[str, Certificate],
+    progress: Progress,
+) -> tuple[Proof, ...]:
+    """As `prove_all`, of these claims."""
+    budget = Budget(question.study.budget.prove)
+    proofs = []
+    for k, claim in enumerate(claims):
+        seconds = budget.share(len(claims) - k).seconds
+        proofs.append(question.prove(claim, worst.get(claim.margin), known.get(claim.margin), progress, seconds))
+    return tuple(proofs)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +16,13 @@ from studies import pipeline
 from studies.at_key import told_at_key
 from studies.committed_proofs import proof_rows
 from studies.load import load_study
-from studies.optimum import FILE, GIVEN, Optimum, optimum_of, read_optimum
+from studies.optimum import FILE, Optimum, optimum_of, read_optimum, told
+from studies.pipeline import GIVEN
+from studies.questions import changes, cycle_question, design_question, digest_of
 from studies.rows import ROUNDING, Row, agrees, at_least, same, same_digest
 from studies.schema import Study
 
+_OWN_ROWS = ("asked", "worst_pose", "geometry", "certificate", "made_by.design_digest", "made_by.cycle_digest")
 _SOLVED = "Solve_Succeeded"
 
 
@@ -30,11 +34,13 @@ def check_study(study_file: Path) -> list[Row]:
     """
     study = load_study(study_file)
     claimed = read_optimum(study_file.parent / FILE)
-    made_for = _made_for(study, claimed)
-    if not made_for.holds:
-        return [made_for]  # an answer to another question
+    if not claimed.answers_design(study):
+        return _question(claimed, study, "design")  # an answer to another question
+    cycle_stands = claimed.asked("cycle") == cycle_question(study)
+    asked = study if cycle_stands else study.model_copy(update={"trajectory": None})
     with told_at_key(study_file):
-        outcome = pipeline.run(study, claimed.robot(study), lambda _: None, compare_cycles=False)
+        outcome = pipeline.run(asked, claimed.robot(study), lambda _: None, compare_cycles=False)
+    outcome = replace(outcome, study=study)
     return compare(claimed, outcome) + proofs(claimed, outcome, study_file.parent)
 
 
@@ -52,7 +58,8 @@ def compare(claimed: Optimum, outcome: pipeline.Outcome) -> list[Row]:
     """Every claim of a file, but those of being proved, against what its geometry was found to do."""
     study, problem, robot = outcome.study, outcome.problem, outcome.robot
     return [
-        _made_for(study, claimed),
+        *_question(claimed, study, "design"),
+        *_question(claimed, study, "cycle"),
         *_within_bounds(problem, robot),
         *_requirements(study, outcome),
         *_at_claimed_poses(claimed, problem, robot, outcome.region),
@@ -60,9 +67,13 @@ def compare(claimed: Optimum, outcome: pipeline.Outcome) -> list[Row]:
     ]
 
 
-def _made_for(study: Study, claimed: Optimum) -> Row:
-    digest = str(claimed.data["made_by"].get("study_digest"))
-    return same_digest("made for this study.toml, unchanged", digest, study.digest)
+def _question(claimed: Optimum, study: Study, which: str) -> list[Row]:
+    """That the file answers this question of the study, or each key that changed since; then the digest."""
+    now = {"design": design_question, "cycle": cycle_question}[which](study)
+    changed = changes(claimed.asked(which), now)
+    rows = [Row(f"{which} question: {key}", told(was), told(is_now), -1.0) for key, (was, is_now) in changed.items()]
+    digest = claimed.data["made_by"].get(f"{which}_digest")
+    return [*rows, same_digest(f"answers the study's {which} question", digest, digest_of(now))]
 
 
 def _within_bounds(problem: Problem, robot: Mechanism) -> list[Row]:
@@ -83,7 +94,7 @@ def _within_bounds(problem: Problem, robot: Mechanism) -> list[Row]:
 
 
 def _requirements(study: Study, outcome: pipeline.Outcome) -> list[Row]:
-    """Requirements met over the region and on the cycle, limits kept, and the prototype beaten."""
+    """Requirements met over the region and on the cycle, limits kept, and no worse than the study's own geometry."""
     rows = []
     for r in outcome.problem.requirements:
         worst = outcome.worst[r.margin]
@@ -93,7 +104,14 @@ def _requirements(study: Study, outcome: pipeline.Outcome) -> list[Row]:
     if study.optimise is not None and outcome.prototype is not None:
         name = outcome.problem.objective
         worst = outcome.worst[name]
-        rows.append(at_least(f"{name} beats the prototype", outcome.prototype[name].value, worst.value, worst.pose))
+        rows.append(
+            at_least(
+                f"{name} is no worse than of the study's own geometry",
+                outcome.prototype[name].value,
+                worst.value,
+                worst.pose,
+            )
+        )
     for name, value in outcome.cycle_figures().get("peak_over_limit", {}).items():
         rows.append(Row(f"{name}, peak over limit", "<= 1", f"{value:.6f}", 1.0 - value))
     return rows
@@ -116,15 +134,19 @@ def _entries(claimed: Optimum, found: Optimum, study: Study) -> list[Row]:
     """Every other entry of the file against the same entry computed now; none missing, none invented."""
     ours, theirs = dict(_leaves(found.data)), dict(_leaves(claimed.data))
     ours["made_by.solver_status"] = _SOLVED if study.optimise else GIVEN  # `check` does not optimise again
+    cycle_stands = claimed.asked("cycle") == cycle_question(study)
     rows = []
     for key in dict.fromkeys([*ours, *theirs]):
-        if key.split(".")[0] in ("worst_pose", "geometry", "certificate") or key == "made_by.study_digest":
-            continue  # these have their own rows
+        table = key.split(".")[0]
+        if table in _OWN_ROWS or key in _OWN_ROWS or (table == "cycle" and not cycle_stands):
+            continue
         if key not in ours or key not in theirs:
             have, lack = ("the file", "the run") if key in theirs else ("the run", "the file")
             rows.append(Row(key, f"in {have} only", f"not in {lack}", -1.0))
         elif isinstance(ours[key], float):
             rows.append(agrees(key, theirs[key], ours[key]))
+        elif key == "made_by.geometry_hash":
+            rows.append(same_digest(key, theirs[key], ours[key]))
         else:
             rows.append(same(key, theirs[key], ours[key]))
     missing = set(found.data["worst_pose"]) - set(claimed.data["worst_pose"])

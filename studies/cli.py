@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-import os
-import signal
-import sys
 from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
 
-from studies.cli_inputs import load, outcome_of, require_writable_folders, robot_for, study_file
+from studies.cli_end import ended_by
+from studies.cli_inputs import load, output_folder, robot_for, study_file
 from studies.cli_map import map_
-from studies.cli_options import FormatOption, JsonOption, OutOption, PrototypeOption, StudyArgument
+from studies.cli_options import (
+    ForceOption,
+    FormatOption,
+    JsonOption,
+    OutOption,
+    PrototypeOption,
+    SecondsOption,
+    StudyArgument,
+)
+from studies.cli_run import optimise, run
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -43,49 +50,8 @@ def list_(json: JsonOption = False) -> None:
     console.print_table("Studies", ("name", "question"), list(titles.items()))
 
 
-@app.command()
-def run(
-    study: StudyArgument,
-    out: OutOption = None,
-    json: JsonOption = False,
-    commit: Annotated[
-        bool,
-        typer.Option("--commit", help="Also put optimum.toml beside the study, for `check` to verify from now on."),
-    ] = False,
-) -> None:
-    """The whole way: optimise, search densely, time the cycle, verify, prove, write set-points and report.
-
-    linkwright run heli4 --out results
-
-    linkwright run my_robot/study.toml --commit
-    """
-    from studies import console
-    from studies.outputs import write_run
-
-    asked = load(study)
-    folder = out or Path("out") / asked.name
-    beside = study_file(study).parent if commit else None
-    require_writable_folders(folder, beside)
-    outcome = outcome_of(study, asked, None, prove=True)
-    files = write_run(outcome, folder, f"linkwright run {study}", beside)
-    console.print_outcome(outcome, files, json)
-
-
-@app.command()
-def optimise(study: StudyArgument, json: JsonOption = False) -> None:
-    """Optimise the geometry and print what was found; writes nothing.
-
-    linkwright optimise heli4 --json
-    """
-    from kinematics.errors import InvalidValue
-    from studies import console
-
-    asked = load(study).model_copy(update={"trajectory": None})
-    if asked.optimise is None:
-        raise InvalidValue(f"study {asked.name}", "no [optimise] table", "one with the variables to optimise")
-    console.print_outcome(outcome_of(study, asked, None), [], json)
-
-
+app.command()(run)
+app.command()(optimise)
 app.command("map")(map_)
 
 
@@ -105,6 +71,8 @@ def certify(
     ] = None,
     json: JsonOption = False,
     prototype: PrototypeOption = False,
+    seconds: SecondsOption = None,
+    force: ForceOption = False,
 ) -> None:
     """Prove the requirements of the committed optimum at every pose of the region; exits 1 if one is not.
 
@@ -113,16 +81,18 @@ def certify(
     linkwright certify gough_stewart --margin joint_travel --at-least 0.02
     """
     from studies import console
-    from studies.certify import question_of
-    from studies.outputs import write_proofs
+    from studies.certify import prove_claims, question_of
+    from studies.output_folder import Written
+    from studies.outputs import claim_file, write_proofs
 
-    asked = load(study)
+    asked = load(study, seconds=seconds)
     question = question_of(asked, robot_for(study, asked, prototype))
     claims = question.only(margin, at_least)
-    require_writable_folders(out)
+    folder = output_folder(out, [claim_file(claim.margin) for claim in claims], force)
     with console.progress() as tell:
-        proofs = [question.prove(claim, None, None, tell) for claim in claims]
-    console.print_proofs(question, proofs, write_proofs(proofs, out) if out else [], json)
+        proofs = prove_claims(question, claims, {}, {}, tell)
+    written = write_proofs(question, proofs, folder) if folder else Written()
+    console.print_proofs(question, proofs, written, json)
     if not all(proof.certificate.status == "proved" for proof in proofs):
         raise typer.Exit(1)
 
@@ -139,6 +109,7 @@ def trajectory(
         str | None, typer.Option("--law", help="Timing law, in place of the study's: jerk, toppra or free.")
     ] = None,
     formats: FormatOption = None,
+    force: ForceOption = False,
 ) -> None:
     """Time and verify the study's cycle on its committed optimum; with --out, write the set-points.
 
@@ -149,9 +120,12 @@ def trajectory(
     from kinematics.errors import InvalidValue
     from studies import console
     from studies.at_key import told_at_key
+    from studies.cycle_stage import require_on_cycle, time_cycle
+    from studies.output_folder import Written
     from studies.outputs import write_setpoints
-    from studies.pipeline import require_on_cycle, time_cycle
     from studies.schema_trajectory import LAWS
+    from studies.setup import drive_file_names
+    from studies.stages import stage
 
     if law is not None and law not in LAWS:
         raise InvalidValue("--law", law, f"one of {', '.join(LAWS)}")
@@ -165,35 +139,43 @@ def trajectory(
     if asked.trajectory is None:
         raise InvalidValue(f"study {asked.name}", "no [trajectory] table", "one with the cycle to time")
     robot = robot_for(study, load(study), prototype)
-    require_writable_folders(out)
-    with told_at_key(study_file(study)), console.progress() as tell:
-        tell("cycle")
-        with_law = asked.trajectory.model_copy(update={"law": law or asked.trajectory.law})
-        timing = time_cycle(asked.model_copy(update={"trajectory": with_law}), robot)
+    folder = output_folder(out, drive_file_names(asked, study_file(study), formats), force)
+    if law is not None:
+        asked = asked.model_copy(update={"trajectory": asked.trajectory.model_copy(update={"law": law})})
+    with told_at_key(study_file(study)), console.progress() as tell, stage("cycle", tell):
+        timing = time_cycle(asked, robot)
     require_on_cycle(asked, timing.cycle)
-    console.print_timing(timing, write_setpoints(timing, asked.trajectory, out) if out else [], json)
+    console.print_timing(timing, write_setpoints(timing, asked, folder) if folder else Written(), json)
 
 
 @app.command()
 def report(
-    study: StudyArgument, out: OutOption = None, json: JsonOption = False, prototype: PrototypeOption = False
+    study: StudyArgument,
+    out: OutOption = None,
+    json: JsonOption = False,
+    prototype: PrototypeOption = False,
+    seconds: SecondsOption = None,
+    force: ForceOption = False,
 ) -> None:
     """Write the report and the set-points of the committed optimum; its proofs are replayed, nothing is optimised.
 
     linkwright report heli4 --out results
     """
     from studies import console
+    from studies.at_key import told_at_key
     from studies.optimum import committed_certificates
-    from studies.outputs import write_report
+    from studies.outputs import report_names, write_report
+    from studies.pipeline import certified, run
+    from studies.setup import drive_file_names
 
-    asked = load(study)
+    asked = load(study, seconds=seconds)
     robot = robot_for(study, asked, prototype)
-    folder = out or Path("out") / asked.name
-    require_writable_folders(folder)
+    names = report_names(drive_file_names(asked, study_file(study), None))
+    folder = output_folder(out or Path("out") / asked.name, names, force)
     known = committed_certificates(asked, study_file(study).parent, robot)
-    outcome = outcome_of(study, asked, robot, prove=True, known=known)
-    files = write_report(outcome, folder, f"linkwright report {study}")
-    console.print_outcome(outcome, files, json)
+    with told_at_key(study_file(study)), console.progress() as tell:
+        outcome = certified(run(asked, robot, tell), known, tell)
+    console.print_outcome(outcome, write_report(outcome, folder, f"linkwright report {study}"), json)
 
 
 @app.command()
@@ -207,6 +189,7 @@ def export(
     ] = None,
     json: JsonOption = False,
     prototype: PrototypeOption = False,
+    force: ForceOption = False,
 ) -> None:
     """Write the committed optimum as a multibody model for a simulator, at the cycle's start or at home.
 
@@ -215,15 +198,17 @@ def export(
     from kinematics.bodies import UNIFORM
     from studies import console
     from studies.at_key import told_at_key
+    from studies.output_folder import Written
     from studies.outputs import write_model
+    from trajectory import require_writable
 
     asked = load(study)
     robot = robot_for(study, asked, prototype)
-    require_writable_folders(out.parent)
+    require_writable(out.parent)
     rod_middle = None if rods is None else {"split": 0.0, "uniform": UNIFORM}[rods]
     with told_at_key(study_file(study)):
-        written = write_model(robot, asked, rod_middle, out)
-    console.print_files([written], json)
+        written = write_model(robot, asked, rod_middle, out, force)
+    console.print_files(Written((written,)), json)
 
 
 @app.command()
@@ -257,20 +242,4 @@ def check(
 
 def main() -> None:
     """Entry point: an error on purpose becomes its message and its exit status, never a traceback."""
-    signal.signal(signal.SIGINT, _interrupted)
-    try:
-        app()
-    except Exception as error:
-        from kinematics.errors import LinkwrightError
-
-        if not isinstance(error, LinkwrightError):
-            raise
-        print(f"linkwright: {error}", file=sys.stderr)
-        sys.exit(error.exit_status)
-
-
-def _interrupted(*_: object) -> None:
-    """Stop at once: an exception would be swallowed inside the solver, which then answers as if nothing had been."""
-    show_cursor = "\x1b[?25h" if sys.stderr.isatty() else ""
-    os.write(2, f"{show_cursor}\nlinkwright: interrupted, nothing was left half-written\n".encode())
-    os._exit(130)
+    ended_by(app)

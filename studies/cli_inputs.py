@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, overload
 
 if TYPE_CHECKING:
     from kinematics import Mechanism
-    from studies.pipeline import Outcome
-    from studies.schema import Study
+    from studies.output_folder import OutputFolder
+    from studies.schema import Budget, Study
 
 
 def study_file(given: str) -> Path:
@@ -17,26 +19,53 @@ def study_file(given: str) -> Path:
     return study_path(given)
 
 
-def load(given: str, formats: list[str] | None = None) -> Study:
-    """The study, checked against its mechanism; with other formats of drive files where they are given."""
+def load(given: str, formats: list[str] | None = None, seconds: float | None = None) -> Study:
+    """The study, checked against its mechanism.
+
+    Args:
+        formats: of the drive files, in place of the study's.
+        seconds: of each stage, in place of the study's budget.
+    """
     from studies.load import load_study
-    from studies.setup import require_cycle_inside, require_drive_files
+    from studies.setup import drive_file_names, require_cycle_inside
 
     study = load_study(study_file(given))
     if formats and study.trajectory is not None:
         files = study.trajectory.model_copy(update={"files": tuple(formats)})
         study = study.model_copy(update={"trajectory": files})
+    if seconds is not None:
+        study = study.model_copy(update={"budget": _budget(seconds)})
     require_cycle_inside(study, study_file(given))
-    require_drive_files(study, study_file(given), formats)
+    drive_file_names(study, study_file(given), formats)
     return study
 
 
-def require_writable_folders(*folders: Path | None) -> None:
-    from trajectory import require_writable
+def _budget(seconds: float) -> Budget:
+    from kinematics.errors import InvalidValue
+    from studies.schema import Budget
 
-    for folder in folders:
-        if folder is not None:
-            require_writable(folder)
+    if not 0.0 < seconds < math.inf:
+        raise InvalidValue("--seconds", seconds, "a finite time > 0 s")
+    return Budget.each(seconds)
+
+
+@overload
+def output_folder(path: Path, names: Iterable[str], force: bool) -> OutputFolder: ...
+
+
+@overload
+def output_folder(path: Path | None, names: Iterable[str], force: bool) -> OutputFolder | None: ...
+
+
+def output_folder(path: Path | None, names: Iterable[str], force: bool) -> OutputFolder | None:
+    """The folder, where files of these names can be written; None for none."""
+    from studies.output_folder import OutputFolder
+
+    if path is None:
+        return None
+    folder = OutputFolder(path, force)
+    folder.require(names)
+    return folder
 
 
 def robot_for(given: str, asked: Study, prototype: bool) -> Mechanism:
@@ -45,12 +74,3 @@ def robot_for(given: str, asked: Study, prototype: bool) -> Mechanism:
     from studies.optimum import committed
 
     return (None if prototype else committed(asked, study_file(given).parent)) or setup.robot_of(asked)
-
-
-def outcome_of(given: str, asked: Study, robot: Any, prove: bool = False, known: Any = None) -> Outcome:
-    from studies import console, pipeline
-    from studies.at_key import told_at_key
-
-    with told_at_key(study_file(given)), console.progress() as tell:
-        outcome = pipeline.run(asked, robot, tell)
-        return pipeline.certified(outcome, known or {}, tell) if prove else outcome

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from studies.cli_inputs import load, require_writable_folders, robot_for
-from studies.cli_options import JsonOption, OutOption, PrototypeOption, StudyArgument
+from studies.cli_inputs import load, output_folder, robot_for
+from studies.cli_options import ForceOption, JsonOption, OutOption, PrototypeOption, SecondsOption, StudyArgument
 
 MarginOption = Annotated[
     str | None,
@@ -64,8 +64,12 @@ def map_(
     out: OutOption = None,
     json: JsonOption = False,
     prototype: PrototypeOption = False,
+    seconds: SecondsOption = None,
+    force: ForceOption = False,
 ) -> None:
     """Map an index over a plane of the workspace: area, mean, deviation, boundary, picture and numbers.
+
+    Exits 1 where the figures still move by more than the tolerance.
 
     linkwright map heli4 --certified
 
@@ -73,14 +77,15 @@ def map_(
     """
     from studies import console
     from studies.map_console import print_map
-    from studies.map_files import write_map
+    from studies.map_files import map_names, write_map
     from studies.map_options import map_request
     from studies.map_stage import run_map
 
-    asked = load(study)
+    asked = load(study, seconds=seconds)
     request = map_request(asked, robot_for(study, asked, prototype), margin, section, at or (), over or (), at_least)
-    folder = out or Path("out") / asked.name
-    require_writable_folders(folder)
+    folder = output_folder(out or Path("out") / asked.name, map_names(request), force)
     with console.progress() as tell:
-        outcome = run_map(request, tolerance, certified, tell)
-    print_map(outcome, write_map(outcome, folder), json)
+        outcome = run_map(request, tolerance, certified, tell, asked.budget.map)
+    print_map(outcome, write_map(outcome, asked, folder), json)
+    if not outcome.found.settled:
+        raise typer.Exit(1)

@@ -21,6 +21,13 @@ FormatOption = Annotated[
     list[str] | None,
     typer.Option(
         "--format",
-        help="With --out: csv, ros2, cia402, zaber, xps or pmac; once for each. [default: the study's own, or csv]",
+        help="With --out: csv, ros2, cia402, zaber, xps or pmac; once for each (default: the study's own, or csv)",
     ),
+]
+ForceOption = Annotated[
+    bool, typer.Option("--force", help="Replace files that this program did not write, or that were changed since.")
+]
+SecondsOption = Annotated[
+    float | None,
+    typer.Option("--seconds", help="What each stage may take, in place of the study's table \\[budget]."),
 ]

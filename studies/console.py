@@ -17,30 +17,36 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from studies.certify import Proof, Question
-from studies.pipeline import Outcome, Timing
+from studies.cycle_stage import Timing
+from studies.output_folder import Written
+from studies.pipeline import Outcome
 from studies.rows import Row
-from studies.tables import MARGINS, PROOFS, margin_rows, proof_rows
+from studies.stages import Lasting
+from studies.tables import PROOFS, margin_columns, margin_rows, proof_rows
 from trajectory.drive_files import FORMATS
 
 
 @contextmanager
 def progress() -> Iterator[Callable[[str], None]]:
-    """A spinner with the current step on a terminal's standard error; silent in a pipe.
+    """A spinner with the current step on a terminal's standard error; in a pipe, what is lasting, a line each.
 
     Each step stays as a line but those that say the same up to their colon: they only move the count that follows it.
     """
     console = Console(stderr=True, log_path=False)
     if not console.is_terminal:
-        yield lambda _: None
+        yield lambda step: print(step, file=sys.stderr, flush=True) if isinstance(step, Lasting) else None
         return
     with console.status("starting") as status:
-        last = ""
+        last, shown = "", set[str]()
 
         def tell(step: str) -> None:
             nonlocal last
+            if isinstance(step, Lasting) and step in shown:
+                return
             status.update(escape(step))
             if (head := step.partition(":")[0]) != last:
                 console.log(escape(step), highlight=False)
+                shown.add(step)
             last = head
 
         yield tell
@@ -69,13 +75,13 @@ def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]
     Console().print()
 
 
-def print_outcome(outcome: Outcome, files: list[Path], as_json: bool) -> None:
+def print_outcome(outcome: Outcome, written: Written, as_json: bool) -> None:
     """The margins, the geometry, the cycle and the files written."""
     if as_json:
-        print_json(_outcome_data(outcome, files))
+        print_json(_outcome_data(outcome, written))
         return
     sampled = next(iter(outcome.worst.values())).sampled
-    print_table(f"Worst over the region ({sampled} poses and descents)", MARGINS, margin_rows(outcome))
+    print_table(f"Worst over the region ({sampled} poses and descents)", margin_columns(outcome), margin_rows(outcome))
     if outcome.proofs:
         print_table("Proofs over the region", PROOFS, proof_rows(outcome.proofs))
     changed = outcome.problem.robot.geometry.as_dict()
@@ -85,16 +91,18 @@ def print_outcome(outcome: Outcome, files: list[Path], as_json: bool) -> None:
         if value != changed[name]
     ]
     if geometry:
-        print_table("Geometry", ("field", "prototype", "result"), geometry)
-    if outcome.synthesis:
+        print_table("Geometry", ("field", outcome.before, "result"), geometry)
+    if outcome.active:
         print_table("Held back by", ("active constraint",), [(item,) for item in outcome.active])
     if outcome.timing:
-        print_timing(outcome.timing, [], False, outcome.prototype_timing)
-    print_files(files)
+        print_timing(outcome.timing, Written(), False, (outcome.before, outcome.prototype_timing))
+    print_files(written)
 
 
-def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Timing | None = None) -> None:
-    """The cycle's figures and peaks; the prototype's figures beside them where they are known."""
+def print_timing(
+    timing: Timing, written: Written, as_json: bool, before: tuple[str, Timing | None] = ("", None)
+) -> None:
+    """The cycle's figures and peaks; beside them those of a geometry with a name, where they are known."""
     robot, figures = timing.cycle.robot, timing.figures()
     if as_json:
         made_for = {"mechanism": type(robot).__name__, "geometry_hash": robot.geometry.digest}
@@ -108,16 +116,17 @@ def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Ti
                 "proved_over_limit": timing.cycle.proved,
                 "between_setpoints": between,
                 "seconds": timing.seconds,
-                "files": files,
+                **files_data(written),
             }
         )
         return
     names = [name for name in figures if name != "peak_over_limit"]
     title = f"Cycle of {type(robot).__name__}, geometry {robot.geometry.digest[:12]}"
-    if prototype:
-        before = prototype.figures()
-        rows = [(name, _figure(before[name]), _figure(figures[name])) for name in names]
-        print_table(title, ("figure", "prototype", "result"), rows)
+    label, timing_before = before
+    if timing_before:
+        known = timing_before.figures()
+        rows = [(name, _figure(known[name]), _figure(figures[name])) for name in names]
+        print_table(title, ("figure", label, "result"), rows)
     else:
         print_table(title, ("figure", "value"), [(name, _figure(figures[name])) for name in names])
     proved = timing.cycle.certificate
@@ -134,7 +143,7 @@ def print_timing(timing: Timing, files: list[Path], as_json: bool, prototype: Ti
             piece.timed.verification.rows(),
         )
     _print_between(timing)
-    print_files(files)
+    print_files(written)
 
 
 def _print_between(timing: Timing) -> None:
@@ -146,7 +155,7 @@ def _print_between(timing: Timing) -> None:
     print_table("Between set-points, by the drive's interpolation", ("interpolation", "formats", *names), rows)
 
 
-def print_proofs(question: Question, proofs: Sequence[Proof], files: list[Path], as_json: bool) -> None:
+def print_proofs(question: Question, proofs: Sequence[Proof], written: Written, as_json: bool) -> None:
     """Each claim and its answer."""
     if as_json:
         print_json(
@@ -155,12 +164,12 @@ def print_proofs(question: Question, proofs: Sequence[Proof], files: list[Path],
                 "geometry_hash": question.robot.geometry.digest,
                 "region": repr(question.region),
                 "proofs": [_proof_data(proof) for proof in proofs],
-                "files": files,
+                **files_data(written),
             }
         )
         return
     print_table(f"{question.study.name}, over {question.region}", PROOFS, proof_rows(proofs))
-    print_files(files)
+    print_files(written)
 
 
 def print_checks(found: dict[str, list[Row]], as_json: bool, verbose: bool) -> None:
@@ -177,14 +186,18 @@ def print_checks(found: dict[str, list[Row]], as_json: bool, verbose: bool) -> N
             print(f"{name}: {verdict}")
             continue
         table = [
-            ("ok" if row.holds else "FAIL", row.what, row.expected, row.found, f"{row.margin:.3g}", row.where)
+            ("ok" if row.holds else "FAIL", row.what, row.expected, _unless_same(row), f"{row.margin:.3g}", row.where)
             for row in rows
             if verbose or not row.holds
         ]
         print_table(f"{name}: {verdict}", ("", "claim", "expected", "found", "margin", "at pose"), table)
 
 
-def _outcome_data(outcome: Outcome, files: list[Path]) -> dict[str, Any]:
+def _unless_same(row: Row) -> str:
+    return "the same" if row.found == row.expected else row.found
+
+
+def _outcome_data(outcome: Outcome, written: Written) -> dict[str, Any]:
     return {
         "study": outcome.study.name,
         "geometry": outcome.robot.geometry.as_dict(),
@@ -197,7 +210,7 @@ def _outcome_data(outcome: Outcome, files: list[Path]) -> dict[str, Any]:
         "cycle_header": dict(outcome.timing.setpoints.header) if outcome.timing else None,
         "prototype_cycle": outcome.prototype_timing.figures() if outcome.prototype_timing else None,
         "proofs": [_proof_data(proof) for proof in outcome.proofs],
-        "files": files,
+        **files_data(written),
     }
 
 
@@ -212,6 +225,7 @@ def _proof_data(proof: Proof) -> dict[str, Any]:
         "sampled": proof.sampled,
         "gap": proof.gap,
         "counterexample": None if found.counterexample is None else found.counterexample.tolist(),
+        "within_reach": found.within_reach,
         "boxes_left": len(found.left),
     }
 
@@ -220,13 +234,22 @@ def _figure(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def print_files(files: list[Path], as_json: bool = False) -> None:
-    """What was written."""
+def print_files(written: Written, as_json: bool = False) -> None:
+    """What was written, what was removed, and what stays from earlier commands though it answers another question."""
     if as_json:
-        print_json({"files": files})
+        print_json(files_data(written))
         return
-    for file in files:
+    for file in written.files:
         print(f"wrote {file}")
+    for file in written.removed:
+        print(f"removed {file}: it answered another question")
+    for file in written.left:
+        print(f"left {file}: an earlier command wrote it, for another question")
+
+
+def files_data(written: Written) -> dict[str, list[Path]]:
+    """The same as plain data; what is empty is left out, but for the files written."""
+    return {name: list(files) for name, files in vars(written).items() if files or name == "files"}
 
 
 def _plain(value: Any) -> Any:

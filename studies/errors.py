@@ -59,7 +59,7 @@ class Failed:
     pose: tuple[float, ...]
 
     def __str__(self) -> str:
-        where = f" at pose ({', '.join(f'{v:.6g}' for v in self.pose)})" if self.pose else ""
+        where = f" at pose {_pose(self.pose)}" if self.pose else ""
         return f"{self.margin}: found {self.found:.6g}{where}; expected at least {self.at_least:g}"
 
 
@@ -70,7 +70,33 @@ class RequirementFailed(LinkwrightError):
 
     def __init__(self, failed: Sequence[Failed]) -> None:
         self.failed = tuple(failed)
-        super().__init__("requirements fail, nothing was written:\n  " + "\n  ".join(map(str, self.failed)))
+        super().__init__("requirements fail:\n  " + "\n  ".join(map(str, self.failed)))
+
+
+class ApproachFailed(LinkwrightError):
+    """There is no approach from `home` to `start`, the cycle's; `cause` says why, and its exit status stays."""
+
+    def __init__(self, home: tuple[float, ...], start: tuple[float, ...], cause: LinkwrightError) -> None:
+        self.home, self.start, self.cause = home, start, cause
+        self.exit_status = cause.exit_status
+        super().__init__(f"no approach from home {_pose(home)} to the start {_pose(start)}: {cause}")
+
+
+class HomeOutOfReach(LinkwrightError):
+    """The robot cannot stand in its home `pose`; `cause` says which limb cannot reach it."""
+
+    def __init__(self, pose: tuple[float, ...], cause: LinkwrightError) -> None:
+        self.pose, self.cause = pose, cause
+        super().__init__(f"home is out of reach: {cause}")
+
+    @property
+    def shown(self) -> str:
+        """The pose for people."""
+        return _pose(self.pose)
+
+
+def _pose(pose: tuple[float, ...]) -> str:
+    return f"({', '.join(f'{v:.6g}' for v in pose)})"
 
 
 def dotted(path: KeyPath) -> str:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from studies.schema import Study
 
 _WORDS = {
+    "rest": "three finite coordinates",
     "passive": "two angles above 0, at most half a turn: at the drives' ends of the rods, at the platform's",
     "rod_middle": "a share from 0 to 1",
     "screw_lead": "a number above 0",
@@ -46,19 +47,25 @@ def hardware_tables(mechanism: type[Mechanism]) -> dict[str, Table]:
     """The keys of `[inertia]` and `[ranges]`."""
     masses = {f.name: _key(f, mechanism.Inertia.dimensions, " >= 0") for f in fields(mechanism.Inertia)}
     ranges = {f.name: _key(f, mechanism.Ranges.dimensions) for f in fields(mechanism.Ranges)}
-    unit = _JOINTS.get(tuple(sorted(set(mechanism.joint_units))), Dimension.NONE)
-    joints = Key(f"finite low < high, once or for each of {len(mechanism.joint_names)} joints", unit)
+    joints = Key(
+        f"finite low < high, once or for each of {len(mechanism.joint_names)} joints", joint_unit(mechanism), place=True
+    )
     return {
         "inertia": Table({**masses, **table_of(schema_hardware.Inertia).keys}),
         "ranges": Table(ranges | {"joints": joints}),
     }
 
 
+def joint_unit(mechanism: type[Mechanism]) -> Dimension:
+    """What all joints measure; none where they differ."""
+    return _JOINTS.get(tuple(sorted(set(mechanism.joint_units))), Dimension.NONE)
+
+
 def _key(field: Field[Any], dimensions: Mapping[str, str], more: str = "") -> Key:
     shape = np.shape(field.default)  # type: ignore[arg-type]
     dimension = Dimension(dimensions.get(field.name, "none"))
     count = f"{shape[0]} finite numbers" if shape else "a finite number"
-    return Key(_WORDS.get(field.name, f"{count}{more}"), dimension)
+    return Key(_WORDS.get(field.name, f"{count}{more}"), dimension, place=not more)
 
 
 def hardware_faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:

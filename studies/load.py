@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
+from kinematics.errors import InvalidGeometry
 from studies.against_mechanism import faults, study_table
 from studies.errors import KeyPath, Problem, StudyError, spelled
 from studies.mechanisms import mechanism_class, mechanism_names
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from kinematics import Mechanism
 
 # Without a known mechanism nothing can be said about these.
-_OF_THE_MECHANISM = ("geometry", "inertia", "ranges", "region", "optimise", "certify", "requirement")
+_OF_THE_MECHANISM = ("geometry", "inertia", "ranges", "region", "home", "optimise", "certify", "requirement")
 
 
 def load_study(path: Path) -> Study:
@@ -52,6 +53,11 @@ def load_study(path: Path) -> Study:
     if problems:
         raise StudyError(problems)
     assert mechanism is not None
+    try:
+        mechanism.Geometry(**study.geometry)
+    except InvalidGeometry as error:
+        key = conversion.spelling.get(("geometry", error.field), ("geometry",))
+        raise StudyError([file.problem(key, spelled(file.value(key)), error.expected)]) from error
     return _with_waypoints(study, file, mechanism.pose_names)
 
 
@@ -80,6 +86,8 @@ def _with_waypoints(study: Study, file: TomlFile, pose_names: tuple[str, ...]) -
         )
         path = path.model_copy(update={"waypoint": waypoints})
         return study.model_copy(update={"trajectory": study.trajectory.model_copy(update={"path": path})})
+    if len(path.waypoint) == 1:
+        raise StudyError([file.problem((*key, "waypoint"), "one waypoint", "two or more")])
     try:
         path_of(study.trajectory, pose_names)
     except InvalidPath as error:
@@ -125,10 +133,13 @@ def _invalid(error: ValidationError, table: Table) -> Iterator[KeyPath]:
 
 def _problems(file: TomlFile, table: Table, conversion: Conversion, wrong: set[KeyPath]) -> list[Problem]:
     problems = [file.problem(f.path, f.found, f.expected) for f in conversion.findings]
+    told = {finding.path for finding in conversion.findings}
     for path in sorted(wrong, key=str):
         if path in conversion.reported and path not in conversion.spelling:
             continue  # a misspelt key is not missing as well
         spelling = conversion.spelling.get(path, path)
+        if spelling in told:
+            continue
         try:
             value: Any = file.value(spelling)
             found = spelled(value)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Callable
 from pathlib import Path
 
 from kinematics.errors import LinkwrightError
+from studies.errors import spelled
 
 FOLDER = Path(__file__).parent
 FILE = "study.toml"
@@ -16,11 +18,12 @@ class UnknownStudy(LinkwrightError):
 
     def __init__(self, found: str, known: list[str]) -> None:
         self.found, self.known = found, known
-        if Path(found).is_dir():
-            found = f"{found}, a folder without {FILE},"
-        near = difflib.get_close_matches(found, known, n=1)
+        near = difflib.get_close_matches(found[:64], known, n=1)  # longer ones are no slip of the pen
         hint = f" (did you mean {near[0]}?)" if near else ""
-        super().__init__(f"study: found {found}; expected one of {', '.join(known)}, or a path to a {FILE}{hint}")
+        what = f", a folder without {FILE}" if found and _is(Path.is_dir, Path(found)) else ""
+        super().__init__(
+            f"study: found {spelled(found)}{what}; expected one of {', '.join(known)}, or a path to a {FILE}{hint}"
+        )
 
 
 def study_names() -> list[str]:
@@ -37,8 +40,16 @@ def study_path(given: str) -> Path:
     if given in study_names():
         return FOLDER / given / FILE
     path = Path(given)
-    if path.is_dir() and (path / FILE).is_file():
+    if given and _is(Path.is_dir, path) and (path / FILE).is_file():
         return path / FILE
-    if path.is_file() or path.suffix == ".toml":
+    if _is(Path.is_file, path) or path.suffix == ".toml":
         return path
     raise UnknownStudy(given, study_names())
+
+
+def _is(kind: Callable[[Path], bool], path: Path) -> bool:
+    """Whether a path is of a kind; a name that the system does not take, such as one too long, is of none."""
+    try:
+        return kind(path)
+    except (OSError, ValueError):
+        return False

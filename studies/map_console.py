@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
-from studies.console import print_files, print_json, print_table
+from studies.console import files_data, print_files, print_json, print_table
 from studies.map_picture import bound_label
 from studies.map_stage import MapOutcome
+from studies.output_folder import Written
 from studies.rows import shown_pose
 
 
-def print_map(outcome: MapOutcome, files: list[Path], as_json: bool) -> None:
+def print_map(outcome: MapOutcome, written: Written, as_json: bool) -> None:
     """The figures and by how much the last refinement moved them, what is proved, and the files written."""
     figures, unit = outcome.figures(), outcome.area_unit
     if as_json:
         rings = [ring.tolist() for ring in outcome.found.boundary]
-        print_json({**outcome.header(), **figures, "boundary": rings, "files": files})
+        print_json({**outcome.header(), **figures, "boundary": rings, **files_data(written)})
         return
     request, moved, worst = outcome.request, figures["moved"], figures["worst"]
     rows = [
@@ -32,6 +32,8 @@ def print_map(outcome: MapOutcome, files: list[Path], as_json: bool) -> None:
     ]
     if figures["area"] == 0.0:
         rows.insert(0, ("seen", outcome.none_seen, "", ""))
+    if outcome.still_moves:
+        rows.insert(0, ("not settled", outcome.still_moves, "", ""))
     rest = request.section.rest(request.robot.pose_names)
     title = f"{bound_label(outcome)}; {request.section}" + (f"; worst over {', '.join(rest)}" if rest else "")
     print_table(title, ("figure", "value", "moved last by", "at pose"), rows)
@@ -46,10 +48,11 @@ def print_map(outcome: MapOutcome, files: list[Path], as_json: bool) -> None:
             ("certificates", str(len(proof.certificates))),
             ("boxes", str(proof.boxes)),
             ("boxes left undecided", str(len(proof.left))),
+            *([] if proof.complete else [("not complete", "the time was used up")]),
             ("time [s]", f"{proof.seconds:.1f}"),
         ]
         print_table(f"Proved: {proof.margin} >= {proof.at_least:g}", ("figure", "value"), proved)
-    print_files(files)
+    print_files(written)
 
 
 def _number(value: float, digits: int) -> str:

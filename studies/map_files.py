@@ -4,33 +4,38 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 
+from studies.map_options import MapRequest
 from studies.map_picture import map_picture
 from studies.map_stage import MapOutcome, unit_of
-from trajectory import write_files
+from studies.output_folder import OutputFolder, Written
+from studies.outputs import made_for
+from studies.schema import Study
 
 Array = np.ndarray
 
 
-def write_map(outcome: MapOutcome, folder: Path) -> list[Path]:
+def map_names(request: MapRequest) -> tuple[str, str, str]:
+    """Of the picture, the nodes and the boundary."""
+    stem = _stem(request)
+    return f"{stem}.png", f"{stem}.csv", f"{stem}_boundary.csv"
+
+
+def write_map(outcome: MapOutcome, study: Study, folder: OutputFolder) -> Written:
     """Picture, nodes and boundary; all or none of them.
 
     Raises:
-        CannotWrite: the folder cannot be written to.
+        CannotWrite, FileInTheWay: as `OutputFolder.write`.
     """
-    r = outcome.request
-    stem = "_".join(["map", r.index.name, *r.section.axes])
-    return write_files(
-        folder,
-        {
-            f"{stem}.png": map_picture(outcome),
-            f"{stem}.csv": nodes_text(outcome),
-            f"{stem}_boundary.csv": boundary_text(outcome),
-        },
-    )
+    contents: tuple[str | bytes, ...] = map_picture(outcome), nodes_text(outcome), boundary_text(outcome)
+    files = dict(zip(map_names(outcome.request), contents, strict=True))
+    return folder.write({_stem(outcome.request): files}, made_for(study, outcome.request.robot))
+
+
+def _stem(request: MapRequest) -> str:
+    return "_".join(["map", request.index.name, *request.section.axes])
 
 
 def nodes_text(outcome: MapOutcome) -> str:

@@ -14,10 +14,11 @@ from kinematics import FviBounds, Mechanism
 from kinematics.errors import LinkwrightError
 from studies import setup
 from studies.schema import Study
+from studies.units import LARGEST
+from trajectory.units import in_si
 
 DEFAULT = "fvi"
 _FVI_BOUND = 1.0  # what the index's own lower bounds mean by good enough
-_FACTORS = {"mm": 1e-3, "deg": math.pi / 180.0}
 
 
 class InvalidOption(LinkwrightError):
@@ -133,12 +134,12 @@ def _assignments(
         if name in found:
             raise InvalidOption(option, f"{name} twice", "each name once")
         try:
-            values = tuple(float(part) for part in right.split(separator))
+            values = tuple(in_si(part.strip(), suffix) for part in right.split(separator))
         except ValueError:
             raise InvalidOption(option, text, f"numbers with '{separator}' between them") from None
-        if not all(math.isfinite(v) for v in values):
-            raise InvalidOption(option, text, "finite numbers")
-        found[name] = tuple(v * _FACTORS.get(suffix, 1.0) for v in values)
+        if not all(abs(v) <= LARGEST for v in values):  # NaN is not
+            raise InvalidOption(option, text, f"finite numbers, of a size up to {LARGEST:g}")
+        found[name] = values
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -14,6 +15,7 @@ from design.certified import CertifiedRegion, certified_cylinder
 from design.certified_cells import certified_cells
 from design.level_sets import LevelSet, level_set
 from studies.map_options import InvalidOption, MapRequest, angles_of
+from studies.stages import Progress, stage
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,17 @@ class MapOutcome:
         if isinstance(self.request.section.region, Box):
             return self.certified.area(axes)
         return float(np.pi * self.certified.radius**2) if set(axes) == {"x", "y"} else None
+
+    @property
+    def still_moves(self) -> str:
+        """What figures that did not stand still are worth, in words; "" where they did."""
+        found = self.found
+        if found.settled:
+            return ""
+        nodes = " x ".join(map(str, found.map.values.shape[::-1]))
+        if math.isinf(found.moved):
+            return f"one map of {nodes} nodes only, or a part that the map before did not see: may be far off"
+        return f"figures still move by {found.moved:.2g} with {nodes} nodes; {found.tolerance:g} was asked"
 
     @property
     def none_seen(self) -> str:
@@ -72,6 +85,8 @@ class MapOutcome:
             "area": now.area,
             "mean": now.mean,
             "deviation": now.deviation,
+            "settled": self.found.settled,
+            "moved_by": self.found.moved,
             "step": list(self.found.step),
             "moved": {name: abs(getattr(now, name) - getattr(before, name)) for name in vars(now)},
             "worst": value,
@@ -84,6 +99,7 @@ class MapOutcome:
                 "certificates": len(proof.certificates),
                 "boxes": proof.boxes,
                 "left": len(proof.left),
+                "complete": proof.complete,
                 "seconds": proof.seconds,
             }
         return data
@@ -94,25 +110,34 @@ def unit_of(request: MapRequest, name: str) -> str:
     return "rad" if name in angles_of(request.robot) else "m"
 
 
-def run_map(request: MapRequest, tolerance: float, certify: bool, progress: Callable[[str], None]) -> MapOutcome:
+def run_map(
+    request: MapRequest, tolerance: float, certify: bool, progress: Progress, seconds: float = math.inf
+) -> MapOutcome:
     """Sample, and prove where asked.
 
+    Args:
+        tolerance: as in `level_set`.
+        seconds: for the map, and as many for the proof; each then says what it reached.
+
     Raises:
-        InvalidOption: a tolerance not above 0, or no family of regions of which something could be proved.
-        NotConverged: see `level_set`.
+        InvalidOption: a tolerance or a time not above 0, or no family of regions of which something could be proved.
+        OutOfTime: not even a coarse map was complete.
     """
     if not (np.isfinite(tolerance) and tolerance > 0.0):
         raise InvalidOption("--tolerance", tolerance, "a finite number > 0")
-    prove = _proof(request) if certify else None
-    progress(f"map of {request.index.name}")
-    found = level_set(request.index, request.section, request.robot.pose_names, request.bound, tolerance)
+    if not seconds > 0.0:
+        raise InvalidOption("--seconds", seconds, "a number > 0")
+    prove = _proof(request, seconds) if certify else None
+    with stage(f"map of {request.index.name}", progress, seconds):
+        names = request.robot.pose_names
+        found = level_set(request.index, request.section, names, request.bound, tolerance, seconds)
     if prove is None:
         return MapOutcome(request, found, None)
-    progress("certified region")
-    return MapOutcome(request, found, prove())
+    with stage("certified region", progress, seconds):
+        return MapOutcome(request, found, prove())
 
 
-def _proof(request: MapRequest) -> Callable[[], CertifiedRegion]:
+def _proof(request: MapRequest, seconds: float) -> Callable[[], CertifiedRegion]:
     """The search for the certified region, with everything that may be wrong checked before anything runs."""
     r, option = request, "--certified"
     if r.index.name not in r.robot.margins:
@@ -121,6 +146,7 @@ def _proof(request: MapRequest) -> Callable[[], CertifiedRegion]:
         raise InvalidOption(option, f"no bound of {r.index.name}", "--at-least C")
     region, bound, name = _fixed(r), r.bound, r.index.name
     measured: dict[str, Any] = {"bounds": r.fvi_bounds, "characteristic_length": r.characteristic_length}
+    measured["seconds"] = seconds
     if isinstance(region, Cylinder):
         return lambda: certified_cylinder(r.robot, region, name, at_least=bound, **measured)
     return lambda: certified_cells(r.robot, region, r.section.axes, name, at_least=bound, **measured)

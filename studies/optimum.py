@@ -17,13 +17,13 @@ from studies.errors import KeyPath, Problem, StudyError, spelled
 from studies.locate import FILE as STUDY
 from studies.mechanisms import mechanism_class
 from studies.pipeline import Outcome
+from studies.questions import changes, cycle_question, design_question, digest_of
 from studies.schema import Study
 from studies.setup import robot_of
 from studies.toml_file import TomlFile, read_toml
 
 FILE = "optimum.toml"
-GIVEN = "geometry given by the study"
-_TABLES = ("made_by", "geometry", "figures", "worst_pose")
+_TABLES = ("made_by", "asked", "geometry", "figures", "worst_pose")
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,10 @@ class Optimum:
     """The file's content.
 
     Attributes:
-        data: `mechanism`, `active` (what holds the optimum back) and the tables `made_by`, `geometry` (by the fields'
-            names), `figures` (worst value of each margin; the prototype's objective as `prototype`), `worst_pose`
-            (where each one is) and, where the study asks for them, `certificate` (by margin) and `cycle`.
+        data: `mechanism`, `active` (what holds the optimum back) and the tables `made_by`, `asked` (the questions
+            `design` and `cycle`, by key), `geometry` (by the fields' names), `figures` (worst value of each margin; the
+            prototype's objective as `prototype`), `worst_pose` (where each one is) and, where the study asks for them,
+            `certificate` (by margin) and `cycle`.
         file: where it was read from.
     """
 
@@ -55,6 +56,18 @@ class Optimum:
         """What it says of each claim that was to be proved, by margin."""
         entries: dict[str, dict[str, Any]] = self.data.get("certificate", {})
         return entries
+
+    def asked(self, which: str) -> dict[str, Any]:
+        """The question "design" or "cycle" that it answers, by key."""
+        question = self.data["asked"].get(which, {})
+        if not isinstance(question, dict):
+            raise self.fault(("asked", which), spelled(question), "a table")
+        return question
+
+    def answers_design(self, study: Study) -> bool:
+        """Whether its geometry answers this study's design question."""
+        question = design_question(study)
+        return self.asked("design") == question and self.data["made_by"].get("design_digest") == digest_of(question)
 
     def robot(self, study: Study) -> Mechanism:
         """The study's mechanism with this geometry, and the study's masses and joint ranges.
@@ -81,7 +94,8 @@ class Optimum:
 
 def optimum_of(outcome: Outcome) -> Optimum:
     """What a run claims."""
-    study, synthesis, objective = outcome.study, outcome.synthesis, outcome.problem.objective
+    study, objective = outcome.study, outcome.problem.objective
+    design, cycle = design_question(study), cycle_question(study)
     figures = {margin: worst.value for margin, worst in outcome.worst.items()}
     if outcome.prototype is not None:
         figures["prototype"] = outcome.prototype[objective].value
@@ -91,18 +105,20 @@ def optimum_of(outcome: Outcome) -> Optimum:
             "active": outcome.active,
             "made_by": {
                 "version": version("linkwright"),
-                "study_digest": study.digest,
+                "design_digest": digest_of(design),
+                "cycle_digest": digest_of(cycle),
                 "seed": study.optimise.seed if study.optimise else 0,
-                "solver_status": synthesis.status if synthesis else GIVEN,
+                "solver_status": outcome.solver_status,
                 "sampled_poses": outcome.worst[objective].sampled,
                 "characteristic_length": outcome.problem.characteristic_length,
                 "geometry_hash": outcome.robot.geometry.digest,
             },
+            "asked": {"design": design, "cycle": cycle},
             "geometry": outcome.robot.geometry.as_dict(),
             "figures": figures,
             "worst_pose": {m: [round(float(v), 9) + 0.0 for v in w.pose] for m, w in outcome.worst.items()},
             **({"certificate": proof_entries(outcome.proofs, study.certify.most_boxes)} if outcome.proofs else {}),
-            **({"cycle": cycle} if (cycle := outcome.cycle_figures()) else {}),
+            **({"cycle": figures_of_cycle} if (figures_of_cycle := outcome.cycle_figures()) else {}),
         }
     )
 
@@ -136,15 +152,18 @@ def committed(study: Study, folder: Path) -> Mechanism | None:
     """The robot of the optimum beside a study; None where the study gives its geometry itself.
 
     Raises:
-        StudyError: the file is missing, cannot be used, or was made for another state of the study.
+        StudyError: the file is missing, cannot be used, or was made for another design question.
     """
     if study.optimise is None:
         return None
     optimum = read_optimum(folder / FILE)
-    made_for = optimum.data["made_by"].get("study_digest")
-    if made_for != study.digest:
-        asked = f"{study.digest}, this study's; run it again with --commit, or use --prototype"
-        raise optimum.fault(("made_by", "study_digest"), spelled(made_for), asked)
+    if not optimum.answers_design(study):
+        was, now = optimum.asked("design"), design_question(study)
+        found = "; ".join(told_change(key, *values) for key, values in changes(was, now).items())
+        mended = "this study's design question; run it again with --commit, or use --prototype"
+        raise optimum.fault(
+            ("asked", "design"), f"an answer to another question ({found or 'changed by hand'})", mended
+        )
     return optimum.robot(study)
 
 
@@ -157,10 +176,19 @@ def committed_certificates(study: Study, folder: Path, robot: Mechanism) -> dict
     if not (folder / FILE).is_file():
         return {}
     optimum = read_optimum(folder / FILE)
-    made_by = optimum.data["made_by"]
-    if (made_by.get("study_digest"), made_by.get("geometry_hash")) != (study.digest, robot.geometry.digest):
+    if not optimum.answers_design(study) or optimum.data["made_by"].get("geometry_hash") != robot.geometry.digest:
         return {}
     return known_certificates(optimum.certificates, folder)
+
+
+def told_change(key: str, was: object, now: object) -> str:
+    """A changed key in words."""
+    return f"{key} was {told(was)} and is {told(now)}"
+
+
+def told(value: object) -> str:
+    """The value of a key, or that there is none."""
+    return "not given" if value is None else spelled(value)
 
 
 def _tables() -> list[tuple[str, type, str]]:

@@ -12,54 +12,102 @@ from design import certificate_bytes
 from kinematics import Mechanism
 from kinematics.mjcf import mjcf
 from studies import setup
-from studies.certify import Proof
-from studies.committed_proofs import proof_files
+from studies.certify import Proof, Question, claims_of
+from studies.committed_proofs import file_of, proof_files
+from studies.cycle_stage import Timing
 from studies.optimum import FILE, optimum_of
-from studies.pipeline import Outcome, Timing
+from studies.output_folder import Contents, OutputFolder, Written, require_free
+from studies.pipeline import Outcome
+from studies.questions import digest_of
 from studies.report import html_report, pictures_of
 from studies.schema import Study
 from studies.schema_trajectory import Trajectory
-from trajectory import CannotWrite, write_files
+from trajectory import write_files
 from trajectory.drive_files import drive_files
 
+REPORT, MECHANISM = "report.html", "mechanism.png"
+Files = dict[str, Contents]  # by kind
 
-def write_run(outcome: Outcome, folder: Path, command: str, beside: Path | None) -> list[Path]:
-    """Optimum, certificates, report and set-points; `beside` is the study's folder where the first two go too.
+
+def run_names(study: Study, drive_files: Sequence[str]) -> list[str]:
+    """All that a run writes."""
+    return [*optimum_names(study), *report_names(drive_files)]
+
+
+def optimum_names(study: Study) -> list[str]:
+    """The optimum, and the certificates beside it."""
+    return [FILE, *(file_of(claim.margin) for claim in claims_of(study, setup.problem_of(study)))]
+
+
+def report_names(drive_files: Sequence[str]) -> list[str]:
+    """All that a report writes."""
+    return [REPORT, MECHANISM, *drive_files]
+
+
+def made_for(study: Study, robot: Mechanism) -> str:
+    """Digest of the question that files answer; which formats they have belongs to none."""
+    asked = study.model_copy(update={"title": ""})
+    if asked.trajectory is not None:
+        asked = asked.model_copy(update={"trajectory": asked.trajectory.model_copy(update={"files": ("csv",)})})
+    return digest_of({"study": asked.digest, "geometry": robot.geometry.digest})
+
+
+def write_optimum(outcome: Outcome, folder: OutputFolder) -> Written:
+    """The optimum alone, before its cycle and its proofs.
 
     Raises:
         RequirementFailed: a requirement is not met; nothing is written then.
-        CannotWrite: the folder cannot be written to.
+        CannotWrite, FileInTheWay: as `OutputFolder.write`.
     """
     outcome.require_all()
-    optimum: dict[str, str | bytes] = {**proof_files(outcome.proofs), FILE: optimum_of(outcome).text()}
-    written = write_files(folder, {**optimum, **_report(outcome, command)})
-    return written + (write_files(beside, optimum) if beside else [])
+    files = {"optimum": {FILE: optimum_of(outcome).text()}}
+    return folder.write(files, made_for(outcome.study, outcome.robot))
 
 
-def write_report(outcome: Outcome, folder: Path, command: str) -> list[Path]:
+def write_run(outcome: Outcome, folder: OutputFolder, command: str, beside: OutputFolder | None) -> Written:
+    """Optimum, certificates, report and set-points; `beside` is the study's folder where the first two go too.
+
+    Raises:
+        As `write_optimum`.
+    """
+    outcome.require_all()
+    question = made_for(outcome.study, outcome.robot)
+    optimum: Files = {"optimum": {**proof_files(outcome.proofs), FILE: optimum_of(outcome).text()}}
+    written = folder.write({**optimum, **_report(outcome, command)}, question)
+    return written + beside.write(optimum, question) if beside else written
+
+
+def write_report(outcome: Outcome, folder: OutputFolder, command: str) -> Written:
     """Report and set-points, as `write_run` but for the optimum."""
     outcome.require_all()
-    return write_files(folder, _report(outcome, command))
+    return folder.write(_report(outcome, command), made_for(outcome.study, outcome.robot))
 
 
-def _report(outcome: Outcome, command: str) -> dict[str, str | bytes]:
+def _report(outcome: Outcome, command: str) -> Files:
     pictures = pictures_of(outcome)
-    files: dict[str, str | bytes] = {"report.html": html_report(outcome, pictures, command)}
-    files["mechanism.png"] = pictures[0][1]
+    files: Contents = {REPORT: html_report(outcome, pictures, command), MECHANISM: pictures[0][1]}
     asked = outcome.study.trajectory
-    return files | (_setpoints(outcome.timing, asked) if outcome.timing and asked else {})
+    drives = _setpoints(outcome.timing, asked) if outcome.timing and asked else {}
+    return {"report": files, "set-points": drives}
 
 
-def write_proofs(proofs: Sequence[Proof], folder: Path) -> list[Path]:
+def write_proofs(question: Question, proofs: Sequence[Proof], folder: OutputFolder) -> Written:
     """Every certificate, the boxes left of an undecided one included.
 
     Raises:
-        CannotWrite: the folder cannot be written to.
+        CannotWrite, FileInTheWay: as `OutputFolder.write`.
     """
-    return write_files(folder, {f"{p.certificate.margin}.npz": certificate_bytes(p.certificate) for p in proofs})
+    kinds = {p.certificate.margin: {claim_file(p.certificate.margin): certificate_bytes(p.certificate)} for p in proofs}
+    files = {f"certificate of {margin}": file for margin, file in kinds.items()}
+    return folder.write(files, made_for(question.study, question.robot))
 
 
-def write_model(robot: Mechanism, study: Study, rod_middle: float | None, file: Path) -> Path:
+def claim_file(margin: str) -> str:
+    """Where `certify` writes its certificate."""
+    return f"{margin}.npz"
+
+
+def write_model(robot: Mechanism, study: Study, rod_middle: float | None, file: Path, force: bool = False) -> Path:
     """The robot as an MJCF file that starts where the study's cycle does, with its payload; else at home, empty.
 
     Args:
@@ -67,31 +115,35 @@ def write_model(robot: Mechanism, study: Study, rod_middle: float | None, file: 
         study: asks for the cycle.
         rod_middle: share of each rod's mass at its middle; None for the robot's own.
         file: what to write.
+        force: replace a file that is there.
 
     Raises:
         InvalidValue: the mechanism has no such model.
-        UnreachablePose: a limb cannot reach the start.
-        CannotWrite: the file cannot be written.
+        HomeOutOfReach, UnreachablePose: a limb cannot reach home, or the start.
+        CannotWrite, FileInTheWay: the file cannot be written.
     """
-    pose, payload = np.array(robot.home), 0.0
-    if study.trajectory is not None:
+    if study.trajectory is None:
+        pose, payload = setup.home_of(robot), 0.0
+    else:
         path, payload = setup.path_of(study.trajectory, robot.pose_names), study.trajectory.payload
         (pose,) = path.evaluate(np.array(0.0), 0)
-    if file.is_dir():
-        raise CannotWrite(file, "it is a folder")
     if rod_middle is not None:
-        robot = type(robot)(robot.geometry, replace(robot.inertia, rod_middle=rod_middle), robot.ranges)
-    return write_files(file.parent, {file.name: mjcf(robot, pose, payload)})[0]
+        robot = robot.with_inertia(replace(robot.inertia, rod_middle=rod_middle))
+    text = mjcf(robot, pose, payload)
+    require_free(file, force, text)
+    return write_files(file.parent, {file.name: text})[0]
 
 
-def write_setpoints(timing: Timing, asked: Trajectory, folder: Path) -> list[Path]:
+def write_setpoints(timing: Timing, study: Study, folder: OutputFolder) -> Written:
     """Only the set-points, in the formats asked for.
 
     Raises:
         InvalidValue: a format cannot say them.
-        CannotWrite: the folder cannot be written to.
+        CannotWrite, FileInTheWay: as `OutputFolder.write`.
     """
-    return write_files(folder, _setpoints(timing, asked))
+    assert study.trajectory is not None
+    question = made_for(study, timing.cycle.robot)
+    return folder.write({"set-points": _setpoints(timing, study.trajectory)}, question)
 
 
 def _setpoints(timing: Timing, asked: Trajectory) -> dict[str, str | bytes]:

@@ -3,67 +3,25 @@
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-import numpy as np
-
 from design import Certificate
+from design.exchange import worst_of
 from design.nlp import Problem, active_sets
 from design.region import Region
 from design.search import WorstPoses
-from design.synthesis import Progress, Synthesis, synthesise, worst_of
-from kinematics import Mechanism
+from design.synthesis import Synthesis, synthesise
+from kinematics import LinkwrightError, Mechanism
 from studies import setup
 from studies.certify import Proof, Question, prove_all
+from studies.cycle_stage import Timing, margins_on, time_cycle
 from studies.errors import Failed, RequirementFailed
-from studies.inside import leaving
 from studies.schema import Study
-from trajectory import Cycle, Move, Setpoints, cycle_setpoints, lower_bound, there_and_back
-from trajectory.path_certificate import Way
+from studies.stages import Lasting, Progress, stage
 
-
-@dataclass(frozen=True)
-class Timing:
-    """A cycle, its set-points, and the way to its start.
-
-    Attributes:
-        cycle: both ways, timed and verified.
-        setpoints: of the cycle, stretched to whole periods and verified again.
-        approach: from home; None where the study asks for none.
-        lower_bound: no motion on the path itself takes less for the way there, even without a limit of jerk [s].
-        seconds: wall-clock time of timing and verification.
-    """
-
-    cycle: Cycle
-    setpoints: Setpoints
-    approach: Move | None
-    lower_bound: float
-    seconds: float
-
-    @property
-    def half_cycle(self) -> float:
-        """The way there, before the stretch to whole periods [s]."""
-        return self.cycle.half
-
-    def figures(self) -> dict[str, Any]:
-        """What the timing claims, as plain data."""
-        there = [piece.timed for piece in self.cycle.there]
-        return {
-            "law": there[0].motion.name,
-            "half_cycle": self.half_cycle,
-            "lower_bound": self.lower_bound,
-            "cycle_on_the_bus": float(self.setpoints.time[-1]),
-            "repair_factor": max(timed.factor for timed in there),
-            "peak_over_limit": {
-                name: max(piece.timed.verification.peak_over_limit[name] for piece in self.cycle.pieces)
-                for name in there[0].verification.peak_over_limit
-            },
-            "worst_rms_over_peak_torque": max(float(timed.verification.rms_over_peak.max()) for timed in there),
-            **({"limits_not_kept": list(self.cycle.not_kept)} if self.cycle.not_kept else {}),
-        }
+GIVEN = "geometry given by the study"
 
 
 @dataclass(frozen=True)
@@ -73,12 +31,13 @@ class Outcome:
     Attributes:
         study, problem, region: what was asked.
         robot: the geometry that stands at the end: the optimum, or the study's own.
-        synthesis: how it was found; None where the geometry was given.
+        synthesis: how it was found; None where the geometry was given, or found by an earlier run.
+        solver_status: the solver's last word on the geometry, or that it was given.
         worst: the worst pose of each margin, by its name.
-        prototype: the same for the prototype, where a synthesis changed it.
+        prototype: the same for the study's own geometry, where the robot has another.
         on_cycle: the worst value of each requirement's margin on the cycle; empty without one.
         timing: the cycle; None where the study asks for none.
-        prototype_timing: the prototype's cycle, to compare with.
+        prototype_timing: the cycle of the study's own geometry, to compare with; None without one.
         proofs: what was tried to prove of every pose; empty before that stage.
     """
 
@@ -87,12 +46,18 @@ class Outcome:
     region: Region
     robot: Mechanism
     synthesis: Synthesis | None
+    solver_status: str
     worst: dict[str, WorstPoses]
     prototype: dict[str, WorstPoses] | None
-    on_cycle: dict[str, float]
-    timing: Timing | None
-    prototype_timing: Timing | None
+    on_cycle: dict[str, float] = field(default_factory=dict)
+    timing: Timing | None = None
+    prototype_timing: Timing | None = None
     proofs: tuple[Proof, ...] = ()
+
+    @property
+    def before(self) -> str:
+        """What the study's own geometry is called: the mechanism's prototype, or given where the study changes that."""
+        return "given" if self.study.geometry else "prototype"
 
     @property
     def question(self) -> Question:
@@ -104,7 +69,7 @@ class Outcome:
         """What holds the optimum back; empty where nothing was optimised."""
         if self.study.optimise is None:
             return []
-        return active_sets(self.problem, self.robot, {margin: worst.value for margin, worst in self.worst.items()})
+        return active_sets(self.problem, self.robot, self.worst)
 
     def cycle_figures(self) -> dict[str, Any]:
         """What the cycle claims, as plain data; empty without one."""
@@ -143,96 +108,54 @@ def optimise(study: Study, progress: Progress) -> Synthesis:
         starts=study.optimise.starts if study.optimise else 1,
         about=study.dense_sample,
         progress=progress,
+        seconds=study.budget.optimise if study.optimise else math.inf,
     )
 
 
-def margins_on(problem: Problem, robot: Mechanism, ways: Sequence[Way], grid: int) -> dict[str, float]:
-    """The worst value of each requirement's margin on what a cycle travels; NaN counts as -inf."""
-    poses = np.concatenate([way.evaluate(np.linspace(0.0, way.length, grid + 1), 0)[0] for way in ways])
-    found = {}
-    for requirement in problem.requirements:
-        values = robot.margin(requirement.margin, poses, problem.fvi_bounds, problem.characteristic_length)
-        found[requirement.margin] = float(np.where(np.isnan(values), -np.inf, values).min())
-    return found
+def designed(study: Study, robot: Mechanism | None, progress: Progress, solver_status: str = GIVEN) -> Outcome:
+    """The geometry and its worst poses; with a robot given (an optimum that is known), nothing is optimised.
 
-
-def require_on_cycle(study: Study, cycle: Cycle) -> None:
-    """Check the study's requirements on its cycle.
-
-    Raises:
-        RequirementFailed: with each one that fails there.
+    Args:
+        solver_status: the solver's last word on the robot that is given.
     """
-    assert study.trajectory is not None
-    problem = setup.problem_of(study)
-    found = margins_on(problem, cycle.robot, cycle.ways, study.trajectory.grid)
-    failed = [
-        Failed(f"{r.margin} on the cycle", r.at_least, found[r.margin], ())
-        for r in problem.requirements
-        if not found[r.margin] >= r.at_least
-    ]
-    if failed:
-        raise RequirementFailed(failed)
+    problem, region = setup.problem_of(study), setup.region_of(study)
+    if robot is None and study.optimise is not None:
+        with stage("optimise", progress, study.budget.optimise):
+            found = optimise(study, progress)
+        return Outcome(study, problem, region, found.robot, found, found.status, found.after, found.before)
+    robot = robot or problem.robot
+    with stage("worst poses", progress):
+        worst = worst_of(problem, robot, region, study.dense_sample)
+        before = None
+        if robot.geometry != problem.robot.geometry:
+            before = worst_of(problem, problem.robot, region, study.dense_sample)
+    return Outcome(study, problem, region, robot, None, solver_status, worst, before)
 
 
-def time_cycle(study: Study, robot: Mechanism) -> Timing:
-    """Time, verify and sample the study's cycle on a robot.
+def with_cycle(outcome: Outcome, progress: Progress, compare: bool = True) -> Outcome:
+    """The outcome with the study's cycle, where it asks for one.
 
-    Raises:
-        RequirementFailed: the cycle leaves the study's region; and what the timing law and the verification raise.
+    Args:
+        compare: time it on the study's own geometry too, where the robot has another.
     """
-    from trajectory.moves import plan_move
-
-    asked = study.trajectory
-    assert asked is not None
-    started = time.perf_counter()
-    path, limits, payload = setup.path_of(asked, robot.pose_names), setup.limits_of(asked.limits), asked.payload
-    timing, cannot_keep = setup.timing_of(study)
-    cycle = there_and_back(robot, path, limits, payload, timing, asked.payload_back, cannot_keep)
-    _require_inside(setup.region_of(study), cycle)
-    seconds = time.perf_counter() - started
-    points = cycle_setpoints(cycle, asked.period, robot.actuator_units)
-    approach = None
-    if asked.approach is not None:
-        gentle = setup.approach_limits(asked.approach, limits, len(robot.joint_names))
-        home, units = np.array(robot.home), robot.actuator_units
-        approach = plan_move(robot, home, points.pose[0], gentle, payload, asked.period, units)
-    bound = sum(lower_bound(robot, piece.path, limits, payload) for piece in cycle.there)
-    return Timing(cycle, points, approach, bound, seconds)
-
-
-def _require_inside(region: Region, cycle: Cycle) -> None:
-    out = [found for way in cycle.ways if (found := leaving(region, way, cycle.robot.pose_names))]
-    if out:
-        room = "room to the region's boundary on the cycle [m or rad]"
-        raise RequirementFailed([Failed(room, 0.0, found.room, tuple(found.pose.tolist())) for found in out])
+    study, prototype = outcome.study, None
+    if study.trajectory is None:
+        return outcome
+    with stage("cycle", progress):
+        timing = time_cycle(study, outcome.robot)
+    on_cycle = margins_on(outcome.problem, outcome.robot, timing.cycle.ways, study.trajectory.grid)
+    if outcome.prototype is not None and compare:
+        try:
+            with stage("cycle of the study's own geometry", progress):
+                prototype = time_cycle(study, outcome.problem.robot)
+        except LinkwrightError as error:  # it is there to compare with, and need not be able to
+            progress(Lasting(f"the study's own geometry has no cycle to compare with: {error}"))
+    return replace(outcome, on_cycle=on_cycle, timing=timing, prototype_timing=prototype)
 
 
 def run(study: Study, robot: Mechanism | None, progress: Progress, compare_cycles: bool = True) -> Outcome:
-    """All stages; with a robot given (a committed optimum), its geometry stands and nothing is optimised.
-
-    `compare_cycles` times the prototype's cycle too.
-    """
-    problem, region = setup.problem_of(study), setup.region_of(study)
-    synthesis: Synthesis | None = None
-    before: dict[str, WorstPoses] | None = None
-    if robot is None and study.optimise is not None:
-        synthesis = optimise(study, progress)
-        robot, worst, before = synthesis.robot, synthesis.after, synthesis.before
-    else:
-        robot = robot or problem.robot
-        progress("worst poses")
-        worst = worst_of(problem, robot, region, study.dense_sample)
-        if robot.geometry != problem.robot.geometry:
-            before = worst_of(problem, problem.robot, region, study.dense_sample)
-    timing = prototype_timing = None
-    on_cycle: dict[str, float] = {}
-    if study.trajectory is not None:
-        progress("cycle")
-        timing = time_cycle(study, robot)
-        on_cycle = margins_on(problem, robot, timing.cycle.ways, study.trajectory.grid)
-        if before is not None and compare_cycles:
-            prototype_timing = time_cycle(study, problem.robot)
-    return Outcome(study, problem, region, robot, synthesis, worst, before, on_cycle, timing, prototype_timing)
+    """Geometry and cycle; with a robot given, its geometry stands and nothing is optimised."""
+    return with_cycle(designed(study, robot, progress), progress, compare_cycles)
 
 
 def certified(outcome: Outcome, known: Mapping[str, Certificate], progress: Progress) -> Outcome:
@@ -242,6 +165,8 @@ def certified(outcome: Outcome, known: Mapping[str, Certificate], progress: Prog
         RequirementFailed: the dense search or a proof's search finds a requirement broken.
     """
     outcome.require_all()
-    found = replace(outcome, proofs=prove_all(outcome.question, outcome.worst, known, progress))
+    with stage("prove", progress, outcome.study.budget.prove):
+        proofs = prove_all(outcome.question, outcome.worst, known, progress)
+    found = replace(outcome, proofs=proofs)
     found.require_all()
     return found

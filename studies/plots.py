@@ -54,11 +54,14 @@ def section_of(problem: Problem, robot: Mechanism, region: Region, margin: str, 
 
 
 def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
-    """Each robot in 3-D at its home pose, in the same scale, with the workspace's edge."""
+    """Each robot in 3-D in its workspace, all in the same scale, with the workspace's edge.
+
+    A robot that reaches no pose of the workspace is drawn as far as it can be.
+    """
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.6 * len(robots), 4.2))
-        drawn = {label: robot.polylines(np.array(robot.home)) for label, robot in robots.items()}
-        box = _common_box([line for lines in drawn.values() for line in lines.values()] + region.outline())
+        drawn = {label: _finite(robot.polylines(pose_in(robot, region))) for label, robot in robots.items()}
+        low, high = _common_box([line for lines in drawn.values() for line in lines.values()] + region.outline())
         for k, (label, lines) in enumerate(drawn.items(), start=1):
             axes = figure.add_subplot(1, len(robots), k, projection="3d")
             for name, line in lines.items():
@@ -68,17 +71,40 @@ def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
             for edge in region.outline():
                 axes.plot(*edge.T, color="#3c7a3f", linewidth=0.8, alpha=0.7)
             axes.set(title=label, xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
-            axes.set(xlim=box[0], ylim=box[1], zlim=box[2])
-            axes.set_aspect("equal")
-            axes.set_box_aspect(None, zoom=1.1)
+            axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+            axes.locator_params(nbins=5)
+            axes.set_box_aspect(high - low, zoom=1.1)  # as long as the limits: equal scales
             axes.view_init(elev=18, azim=-60)
         return png(figure)
 
 
-def _common_box(lines: list[Array]) -> list[tuple[float, float]]:
-    """Limits of x, y and z that hold every line."""
+def pose_in(robot: Mechanism, region: Region) -> Array:
+    """(n,) a pose of the region: home where it is one, else the most central one of few that the robot reaches.
+
+    Where it reaches none of them, the most central one of all.
+    """
+    names, home = robot.pose_names, np.asarray(robot.home, dtype=float)
+    poses = region.spread(names)
+    middle = np.array([region.intervals[name] for name in names]).mean(axis=-1)
+    away = np.abs(poses - middle) / np.where(region.extent(names) > 0.0, region.extent(names), 1.0)
+    poses = poses[np.argsort(away.max(axis=-1), kind="stable")]
+    if region.contains(home, names):
+        poses = np.vstack([home, poses])
+    reached = np.isfinite(robot.inverse(poses)).all(axis=-1)
+    return np.asarray(poses[int(np.argmax(reached))])  # the first where all are False
+
+
+def _finite(lines: dict[str, Array]) -> dict[str, Array]:
+    """Without the points that a pose out of reach leaves without a place."""
+    return {name: line[np.isfinite(line).all(axis=-1)] for name, line in lines.items()}
+
+
+def _common_box(lines: list[Array]) -> tuple[Array, Array]:
+    """(3,) lower and upper limits that hold every line; a flat side is as wide as a hundredth of the longest."""
     points = np.concatenate(lines)
-    return list(zip(points.min(axis=0).tolist(), points.max(axis=0).tolist(), strict=True))
+    low, high = points.min(axis=0), points.max(axis=0)
+    wanting = np.maximum(0.0, 0.01 * float((high - low).max()) - (high - low))
+    return low - wanting / 2, high + wanting / 2
 
 
 def map_picture(sections: dict[str, Map], title: str, bound: float | None) -> bytes:

@@ -12,8 +12,9 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from kinematics.motion import JointMotion
 from studies import plots
-from studies.pipeline import Outcome, Timing
-from studies.tables import MARGINS, PROOFS, margin_rows, proof_rows
+from studies.cycle_stage import Timing
+from studies.pipeline import Outcome
+from studies.tables import PROOFS, margin_columns, margin_rows, proof_rows
 from trajectory.motion import motion_of
 
 Pictures = list[tuple[str, bytes]]  # title and PNG
@@ -45,11 +46,14 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
         bounds=outcome.problem.fvi_bounds,
         region=repr(outcome.region),
         geometry=_geometry_rows(outcome),
-        margin_columns=MARGINS,
+        before=outcome.before,
+        margin_columns=margin_columns(outcome),
         margins=margin_rows(outcome),
         proof_columns=PROOFS,
         proofs=proof_rows(outcome.proofs),
         sampled=next(iter(outcome.worst.values())).sampled,
+        optimised=outcome.study.optimise is not None,
+        solver_status=outcome.solver_status,
         synthesis=outcome.synthesis,
         active=outcome.active,
         on_cycle=outcome.on_cycle,
@@ -63,7 +67,7 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
 
 
 def _geometry_rows(outcome: Outcome) -> list[tuple[str, str, str, str]]:
-    """Field, prototype, result, what it means."""
+    """Field, the study's own, result, what it means."""
     before, after = outcome.problem.robot.geometry, outcome.robot.geometry
     return [
         (name, _numbers(getattr(before, name)), _numbers(getattr(after, name)), doc)
@@ -73,7 +77,7 @@ def _geometry_rows(outcome: Outcome) -> list[tuple[str, str, str, str]]:
 
 def _timing_rows(outcome: Outcome) -> list[tuple[str, list[tuple[str, str]]]]:
     """Label, figures of each cycle that was timed."""
-    timings = {"result": outcome.timing, "prototype": outcome.prototype_timing}
+    timings = {"result": outcome.timing, outcome.before: outcome.prototype_timing}
     return [(label, _timing_figures(timing)) for label, timing in timings.items() if timing]
 
 
@@ -82,10 +86,10 @@ def _timing_figures(timing: Timing) -> list[tuple[str, str]]:
     on_bus = figures["cycle_on_the_bus"]
     return [
         ("law", figures["law"]),
-        ("half cycle [s]", f"{figures['half_cycle']:.6f}"),
+        (timing.half_cycle_name.replace("_", " ") + " [s]", f"{timing.half_cycle:.6f}"),
         ("no motion on this path, even without a limit of jerk, takes less than [s]", f"{figures['lower_bound']:.6f}"),
-        ("half cycle over that bound", f"{figures['half_cycle'] / figures['lower_bound']:.4f}"),
-        ("cycle on the bus, there and back [s]", f"{on_bus:.6f}"),
+        ("this over that bound", f"{timing.half_cycle / figures['lower_bound']:.4f}"),
+        ("cycle on the bus [s]", f"{on_bus:.6f}"),
         ("cycles per second", f"{1 / on_bus:.3f}"),
         ("repair: time stretched by", f"{figures['repair_factor']:.6f}"),
         ("worst RMS over peak torque", f"{figures['worst_rms_over_peak_torque']:.3f}"),
@@ -105,8 +109,8 @@ def pictures_of(outcome: Outcome) -> Pictures:
     """The mechanism, the maps of its margins, the path and the joints' motion."""
     robots = {"result": outcome.robot}
     if outcome.prototype is not None:
-        robots = {"prototype": outcome.problem.robot, **robots}
-    pictures = [("Mechanism at home, with the workspace's edge", plots.mechanism_picture(robots, outcome.region))]
+        robots = {outcome.before: outcome.problem.robot, **robots}
+    pictures = [("Mechanism in its workspace, whose edge is green", plots.mechanism_picture(robots, outcome.region))]
     bounds = {r.margin: r.at_least for r in outcome.problem.requirements} | {outcome.problem.objective: 1.0}
     mapped = _MAPPED if plots.can_be_mapped(outcome.region, outcome.robot.pose_names) else ()
     for margin in (m for m in mapped if m in outcome.robot.margins):
@@ -137,7 +141,7 @@ def _motion_pictures(timing: Timing) -> Pictures:
         ("torque [N m]" if unit == "rad" else "effort [SI]", torque, cycle.limits.of_joints("torque", count)),
     ]
     return [
-        ("Path of the half cycle", plots.path_picture(pose, times, robot.pose_names)),
+        (f"Path of the {timing.half_cycle_name.replace('_', ' ')}", plots.path_picture(pose, times, robot.pose_names)),
         ("Joints on the way there, limits dashed", plots.motion_picture(times, rows, robot.actuator_names)),
     ]
 

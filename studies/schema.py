@@ -1,11 +1,10 @@
 """The study file: one question, asked in `study.toml`, as a frozen model in SI and radians."""
 
-import hashlib
-import json
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
+from studies.questions import digest_of, plain
 from studies.schema_base import Interval, Model, Name, Positive, gathered, table_of
 from studies.schema_hardware import Inertia, Ranges
 from studies.schema_trajectory import Trajectory
@@ -43,6 +42,20 @@ class CylinderRegion(_Region):
     """With every coordinate of the pose but x and y beside it."""
     radius: Annotated[Positive, Key("a length > 0", LENGTH)]
     """Of x and y about the z axis."""
+
+
+class Home(Model):
+    """The pose that the robot works around: its working mode follows from it, and an approach starts there."""
+
+    coordinates: dict[str, float]
+    """By the pose's names [m or rad]; one that is left out is in the middle of the region."""
+    joints: Annotated[tuple[float, ...] | None, Key("a finite number a joint")] = None
+    """About the joints at home, which choose a branch of each limb's inverse, such as elbows in; None for the usual."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _gather_coordinates(cls, data: Any) -> Any:
+        return gathered(cls, data)
 
 
 class Fvi(Model):
@@ -98,8 +111,27 @@ class Certify(Model):
     """None for all that are required, and the objective."""
     tolerance: Annotated[Positive, Field(lt=1), Key("a number above 0 and below 1")] = 0.01
     """By how much a best bound may stay below the lowest value found, relative to that value."""
-    most_boxes: Annotated[int, Field(ge=4, le=10**9), Key("a whole number from 4 to 1000000000")] = 4_000_000
+    most_boxes: Annotated[int, Field(ge=4, le=8_000_000), Key("a whole number from 4 to 8000000")] = 4_000_000
     """After so many a claim stays undecided."""
+
+
+Seconds = Annotated[Positive, Key("a time > 0 (s)")]
+
+
+class Budget(Model):
+    """How long a stage may take; what it has reached by then stands, and is reported."""
+
+    optimise: Seconds = 90.0
+    """Of the search for the best geometry [s]; one that is not found by then is none, and the best seen is told."""
+    prove: Seconds = 40.0
+    """Of all claims together [s]; what is not decided by then is reported as undecided."""
+    map: Seconds = 60.0
+    """Of a map, and of its certified part [s]."""
+
+    @classmethod
+    def each(cls, seconds: float) -> Self:
+        """The same for each stage."""
+        return cls(**dict.fromkeys(cls.model_fields, seconds))
 
 
 class Study(Model):
@@ -119,6 +151,8 @@ class Study(Model):
     """What differs from the prototype's joint ranges."""
     region: Annotated[Annotated[BoxRegion | CylinderRegion, Field(discriminator="kind")], Table({})]
     """The workspace: every pose that is to be good."""
+    home: Annotated[Home | None, table_of(Home)] = None
+    """The pose that the robot works around; None for the middle of the region."""
     fvi: Annotated[Fvi | None, table_of(Fvi)] = None
     """What the FVI is taken from; None for the mechanism's own."""
     optimise: Annotated[Optimise | None, table_of(Optimise)] = None
@@ -133,22 +167,10 @@ class Study(Model):
     """What is proved."""
     trajectory: Annotated[Trajectory | None, table_of(Trajectory)] = None
     """What is timed; None for no cycle."""
+    budget: Annotated[Budget, table_of(Budget)] = Budget()
+    """How long each stage may take."""
 
     @property
     def digest(self) -> str:
-        """sha256 (hex) of all that the file says, in SI to 12 digits; its folder's name is left out."""
-        canonical = json.dumps(_rounded(self.model_dump(exclude={"name"}, exclude_defaults=True)), sort_keys=True)
-        return hashlib.sha256(canonical.encode()).hexdigest()
-
-
-def _rounded(value: Any) -> Any:
-    """Twelve digits forgive what converting a unit rounds off."""
-    match value:
-        case float():
-            return float(f"{value:.12g}") + 0.0  # no negative zero
-        case dict():
-            return {key: _rounded(entry) for key, entry in value.items()}
-        case list() | tuple():
-            return [_rounded(entry) for entry in value]
-        case _:
-            return value
+        """sha256 (hex) of all that the file says but its budget, in SI to 12 digits; without its folder's name."""
+        return digest_of(plain(self.model_dump(exclude={"name", "budget"}, exclude_defaults=True)))

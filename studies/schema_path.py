@@ -20,12 +20,13 @@ class Cycle(Model):
     A `size` stands for the three, a `place` for `span`, `heading` and `rise`.
     """
 
-    pick: Annotated[tuple[float, float, float], Key("three lengths x, y, z", LENGTH)]
+    pick: Annotated[tuple[float, float, float], Key("three lengths x, y, z", LENGTH, place=True)]
     """Where the cycle starts."""
     size: Annotated[str | None, Key("one of", choices=tuple(STANDARD_SIZES))] = None
-    """Lift, span and place lift at once [mm]."""
+    """Lift, span and place lift at once [mm]; a size says nothing of the corners, so it needs a blend beside it."""
     place: Annotated[
-        tuple[float, float, float] | None, Key("three lengths x, y, z, not above the pick; no size beside it", LENGTH)
+        tuple[float, float, float] | None,
+        Key("three lengths x, y, z, not above the pick; no size beside it", LENGTH, place=True),
     ] = None
     """Where the half cycle ends, in place of span, heading and rise."""
     lift: Annotated[
@@ -38,11 +39,13 @@ class Cycle(Model):
     """Horizontal distance from pick to place."""
     place_lift: Annotated[Positive | None, Key("a length > 0; no size beside it", LENGTH)] = None
     """Height of the vertical leg above the place; None for the lift."""
-    rise: Annotated[float, Key("a length, how much higher the place is; no place beside it", LENGTH)] = 0.0
+    rise: Annotated[float, Key("a length, how much higher the place is; no place beside it", LENGTH, place=True)] = 0.0
     """Place above pick."""
     heading: Annotated[float, Key("an angle; no place beside it", ANGLE)] = 0.0
     """Direction of the span about z, from x."""
-    blend: Annotated[Positive, Key("a length > 0, at most the lift and at most half the span", LENGTH)]
+    blend: Annotated[
+        Positive, Key("a length > 0, at most the lift and at most half the span; needed beside a size, too", LENGTH)
+    ]
     """What a corner takes off each of its legs."""
     turn: Annotated[float, Key("an angle", ANGLE)] = 0.0
     """Change of theta, or yaw, from pick to place."""

@@ -26,7 +26,7 @@ class Limits(Model):
     """Of the tool point."""
     position: Annotated[
         Interval | Annotated[tuple[Interval, ...], Field(min_length=1)] | None,
-        Key("low < high, or one such pair a joint (rad, or m)"),
+        Key("low < high, or one such pair a joint (rad, or m)", place=True),
     ] = None
     """Of the joints; the path alone decides whether it is kept."""
     stall_torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
@@ -89,7 +89,7 @@ class Trajectory(Model):
     """How it is timed; `toppra` keeps no jerk limit, `free` finds the path too."""
     grid: Annotated[int, Field(ge=1000, le=1_000_000), Key("a whole number from 1000 to 1000000")] = 2000
     """Points along the path, at first: the law `toppra` adds what it needs."""
-    period: Annotated[Positive, Key("a time > 0 (s)")] = 0.001
+    period: Annotated[Positive, Field(le=1.0), Key("a time > 0, at most 1 (s)")] = 0.001
     """Of the set-points [s]."""
     cycle: Annotated[Cycle | None, table_of(Cycle)] = None
     """What is travelled, or a path."""

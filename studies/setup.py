@@ -12,12 +12,12 @@ import numpy as np
 
 from design import Bounds, Box, Cylinder, Region, Requirement, SumLimit
 from design.nlp import Problem
-from kinematics import FviBounds, InvalidValue, Mechanism
+from kinematics import FviBounds, InvalidValue, Mechanism, UnreachablePose
 from kinematics.drives import to_actuators
 from kinematics.geometry import GeometryRecord
 from studies import schema_path, schema_trajectory
 from studies.at_key import refused_field, travelled
-from studies.errors import StudyError
+from studies.errors import HomeOutOfReach, StudyError
 from studies.hardware import inertia_of, ranges_of
 from studies.inside import leaving
 from studies.mechanisms import mechanism_class
@@ -28,13 +28,42 @@ from trajectory.cycle import Timing
 from trajectory.drive_files import Drive, drive_files
 from trajectory.pose_bounds import PoseBounds
 
+Array = np.ndarray
 OBJECTIVE = "fvi"
 
 
 def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
     """The study's mechanism, masses and joint ranges; `geometry` in place of the prototype with the study's changes."""
     kind = mechanism_class(study.mechanism)
-    return kind(geometry or kind.Geometry(**study.geometry), inertia_of(study), ranges_of(study))
+    joints = None if study.home is None else study.home.joints
+    return kind(
+        geometry or kind.Geometry(**study.geometry),
+        inertia_of(study),
+        ranges_of(study),
+        home=_home_pose(study, kind.pose_names),
+        home_joints=joints,
+    )
+
+
+def _home_pose(study: Study, pose_names: Sequence[str]) -> list[float]:
+    """(n,) the study's own coordinates, the others in the middle of the region."""
+    given = {} if study.home is None else study.home.coordinates
+    middle = region_of(study).intervals
+    return [given.get(name, sum(middle[name]) / 2) for name in pose_names]
+
+
+def home_of(robot: Mechanism) -> Array:
+    """(n,) the pose that the robot works around.
+
+    Raises:
+        HomeOutOfReach: a limb cannot reach it.
+    """
+    home = np.asarray(robot.home, dtype=float)
+    try:
+        robot.require_reachable(home)
+    except UnreachablePose as error:
+        raise HomeOutOfReach(tuple(home.tolist()), error) from error
+    return home
 
 
 def region_of(study: Study) -> Region:
@@ -102,8 +131,8 @@ def require_cycle_inside(study: Study, file: FilePath) -> None:
         pose = ", ".join(f"{v:.4g}" for v in found.pose)
         read = read_toml(file)
         key = travelled(read)
-        expected = f"a {key} inside the region, {region_of(study)}"
-        raise StudyError([read.problem(("trajectory", key), f"the pose ({pose}) on it", expected)])
+        expected = f"a {key[-1]} inside the region, {region_of(study)}"
+        raise StudyError([read.problem(key, f"the pose ({pose}) on it", expected)])
 
 
 def drive_of(drive: schema_trajectory.Drive) -> Drive:
@@ -111,8 +140,8 @@ def drive_of(drive: schema_trajectory.Drive) -> Drive:
     return Drive(drive.axes, drive.increments, drive.encoder_gear)
 
 
-def require_drive_files(study: Study, file: FilePath, asked_for: Sequence[str] | None) -> None:
-    """Write the drive files of the cycle's path to nowhere, before hours of work go into the real ones.
+def drive_file_names(study: Study, file: FilePath, asked_for: Sequence[str] | None) -> list[str]:
+    """The drive files' names, from writing those of the cycle's path to nowhere before hours of work go into them.
 
     Args:
         asked_for: formats that the command line has in place of the study's own.
@@ -122,13 +151,12 @@ def require_drive_files(study: Study, file: FilePath, asked_for: Sequence[str] |
     """
     asked = study.trajectory
     if asked is None:
-        return
+        return []
+    stems = ("cycle", "approach") if asked.approach else ("cycle",)
     try:
-        drive = drive_of(asked.drive)
-        if set(asked.files) != {"csv"}:
-            robot = robot_of(study)
-            at_rest = _along(robot, path_of(asked, robot.pose_names), asked.period)
-            drive_files("cycle", at_rest, asked.files, drive)
+        robot, drive = robot_of(study), drive_of(asked.drive)
+        at_rest = _along(robot, path_of(asked, robot.pose_names), asked.period)
+        return [name for stem in stems for name in drive_files(stem, at_rest, asked.files, drive)]
     except InvalidValue as error:
         by = f"for --format {' --format '.join(asked_for)}" if asked_for else ""
         key = ("trajectory",) if asked_for else ("trajectory", "files")

@@ -8,14 +8,18 @@ from studies.certify import Proof
 from studies.pipeline import Outcome
 from studies.rows import shown_pose
 
-MARGINS = ("margin", "wanted", "prototype, worst", "result, worst", "at pose")
 PROOFS = ("claim, at every pose", "answer", "boxes", "time [s]", "lowest sampled", "above the bound by", "at pose")
 
 
+def margin_columns(outcome: Outcome) -> tuple[str, ...]:
+    """Of `margin_rows`."""
+    return "margin", "wanted", f"{outcome.before}, worst", "result, worst", "at pose"
+
+
 def margin_rows(outcome: Outcome) -> list[tuple[str, ...]]:
-    """Under `MARGINS`: the worst of each margin."""
+    """Under `margin_columns`: the worst of each margin."""
     wanted = {r.margin: f">= {r.at_least:g}" for r in outcome.problem.requirements}
-    if outcome.synthesis:
+    if outcome.study.optimise:
         wanted.setdefault(outcome.problem.objective, "as large as possible")
     return [
         (
@@ -48,7 +52,8 @@ def proof_rows(proofs: Sequence[Proof]) -> list[tuple[str, ...]]:
 def _where(proof: Proof) -> str:
     certificate = proof.certificate
     if certificate.counterexample is not None:
-        return shown_pose(certificate.counterexample)
+        pose = shown_pose(certificate.counterexample)
+        return pose if certificate.within_reach else f"out of reach: {pose}"
     if len(certificate.left):
         return f"{len(certificate.left)} boxes left, one around {shown_pose(certificate.left[0].mean(axis=0))}"
     return ""

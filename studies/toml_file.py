@@ -71,6 +71,8 @@ def read_toml(path: Path) -> TomlFile:
 
 def _read_text(path: Path) -> str:
     try:
+        if path.exists() and not path.is_file() and not path.is_dir():
+            raise OSError(0, "no file but a device or a pipe")  # reading it might never end
         raw = path.read_bytes()
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)

@@ -3,13 +3,13 @@
 import difflib
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from decimal import Decimal
 from enum import StrEnum
 from typing import Any
 
 from studies.errors import KeyPath
+from trajectory.units import in_si
 
 
 class Dimension(StrEnum):
@@ -41,16 +41,21 @@ _UNIT_WORD = re.compile(
 )
 
 
+SMALLEST, LARGEST = 1e-15, 1e15  # in SI: beyond these no length, time, mass or limit of a machine is meant
+
+
 @dataclass(frozen=True)
 class Key:
     """What a key may hold: `expected` in words, and the dimension that decides its suffix.
 
-    Where `choices` are given, the words name them.
+    Where `choices` are given, the words name them. A `place` may be at 0, and so anywhere close to it: what rounding
+    leaves of a 0 is not too small a number there. Nor is it of angles and frames.
     """
 
     expected: str
     dimension: Dimension = Dimension.NONE
     choices: tuple[str, ...] = ()
+    place: bool = False
 
     @property
     def unit(self) -> str:
@@ -126,7 +131,14 @@ class Conversion:
 
     def _value(self, value: Any, node: Key | Table, suffix: str, path: KeyPath) -> Any:
         if isinstance(node, Key):
-            return _in_si(value, suffix)
+            converted = _in_si(value, suffix)
+            least = 0.0 if node.place or node.dimension in (Dimension.ANGLE, Dimension.FRAME) else SMALLEST
+            odd = [number for number in _numbers(converted) if number and not least <= abs(number) <= LARGEST]
+            if odd:
+                sizes = f"from {SMALLEST:g} to {LARGEST:g}" if least else f"of at most {LARGEST:g}"
+                found, expected = f"{odd[0]:g} in SI", f"0, or a number of a size {sizes}"
+                self.findings.append(Finding(self.spelling[path], found, expected))
+            return converted
         if isinstance(value, list):
             return tuple(self._value(row, node, "", (*path, i)) for i, row in enumerate(value))
         return self.to_si(value, node, path) if isinstance(value, dict) else value
@@ -184,6 +196,15 @@ def _all_spellings(table: Table) -> list[str]:
     return [*table.keys, *suffixed]
 
 
+def _numbers(value: Any) -> Iterator[float]:
+    """The finite numbers of a value."""
+    if isinstance(value, tuple):
+        for entry in value:
+            yield from _numbers(entry)
+    elif isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
+        yield value
+
+
 def _in_si(value: Any, suffix: str) -> Any:
     if isinstance(value, list):
         return tuple(_in_si(entry, suffix) for entry in value)
@@ -193,12 +214,6 @@ def _in_si(value: Any, suffix: str) -> Any:
         number = float(value)
     except OverflowError:
         number = math.inf if value > 0 else -math.inf
-    match suffix:
-        case "mm":
-            # In decimal, so that 24.9 mm is the very number that 0.0249 m is.
-            return float(Decimal(repr(number)).scaleb(-3))
-        case "deg":
-            return math.radians(number)
-        case "rpm":
-            return number * 2 * math.pi / 60
+    if suffix:
+        return in_si(number, suffix)
     return value if math.isfinite(number) else number

@@ -14,6 +14,7 @@ from trajectory.emergency_stop import EmergencyStop, emergency_stop
 from trajectory.errors import (
     InvalidPath,
     LimitsExceeded,
+    MoveRefused,
     PathBeyondLimit,
     PathRefused,
     RoughPath,
@@ -71,6 +72,7 @@ __all__ = [
     "LimitsExceeded",
     "Motion",
     "Move",
+    "MoveRefused",
     "Part",
     "Path",
     "PathBeyondLimit",

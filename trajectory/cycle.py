@@ -23,7 +23,7 @@ from trajectory.timed import TimedMotion
 from trajectory.verification import Verification, verify
 
 Timing = Callable[[Mechanism, Path, Limits, float], TimedMotion]
-_SAME = 1e-9  # of the path's length, or rad: no further apart are two poses the same
+_SAME = 1e-9  # rad, or of the path's length: no further apart are two poses the same
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,8 +166,8 @@ def there_and_back(
 def is_closed(path: Path) -> bool:
     """Whether a path ends in the pose where it starts, an angle a turn on being another one."""
     start, end = path.evaluate(np.array([0.0, path.length]), 0)[0]
-    unit = np.where(np.arange(start.size) < places(path.pose_names), path.length, 1.0)
-    return bool((np.abs(end - start) <= _SAME * unit).all())
+    units = np.where(np.arange(start.size) < places(path.pose_names), path.length, 1.0)
+    return bool((np.abs(end - start) <= _SAME * units).all())
 
 
 def periods_of(duration: float, period: float) -> int:

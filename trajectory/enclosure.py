@@ -62,8 +62,8 @@ def slack(robot: Mechanism, timed: TimedMotion, payload: float, low: Array, high
         away.insert(0, half * steepest + _SLACK * (np.abs(value).max() + np.abs(value)))
         steepest = np.abs(value) + away[0]
     bounds = [np.stack([value - d, value + d]) for value, d in zip(tool, away, strict=True)]
-    boxes = np.concatenate([*bounds, snap], axis=-1)
-    least, most = (np.nan_to_num(v, nan=n) for v, n in zip(enclose(_slopes(robot, payload), *boxes), _ALL, strict=True))
+    boxes = np.concatenate([*bounds, snap, np.full((2, low.size, 1), payload)], axis=-1)
+    least, most = (np.nan_to_num(v, nan=n) for v, n in zip(enclose(_slopes(robot), *boxes), _ALL, strict=True))
     found = half * np.maximum(np.abs(least), np.abs(most))
     count = len(robot.joint_names)
     *joints, torque = (found[:, k * count : (k + 1) * count] for k in range(5))
@@ -98,9 +98,9 @@ def _friction_slack(
 
 
 @lru_cache(maxsize=16)
-def _slopes(robot: Mechanism, payload: float) -> BoxProgram:
-    """Pose, velocity, acceleration, jerk and its rate -> the actuators' first to fourth derivatives, torque's first."""
-    model = robot.model()
+def _slopes(robot: Mechanism) -> BoxProgram:
+    """Pose, its rates up to the fourth and payload -> the actuators' first four derivatives, the torque's first."""
+    model, payload = robot.model(), ca.SX.sym("payload")
     rates = velocity, acceleration, jerk, _ = [
         ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration", "jerk", "rate")
     ]
@@ -108,5 +108,5 @@ def _slopes(robot: Mechanism, payload: float) -> BoxProgram:
     tau = torques(robot, payload, velocity, acceleration)
     state, following = ca.vertcat(model.pose, velocity, acceleration), ca.vertcat(velocity, acceleration, jerk)
     slopes = ca.vertcat(*joints, ca.jtimes(tau, state, following))
-    function = ca.Function("slopes", [model.pose, *rates, model.geometry], [ca.cse(ca.densify(slopes))])
+    function = ca.Function("slopes", [model.pose, *rates, payload, model.geometry], [ca.cse(ca.densify(slopes))])
     return BoxProgram.of(Program.of(function), robot.geometry.vector().tolist())

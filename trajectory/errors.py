@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path as FilePath
 
@@ -91,6 +92,20 @@ class PathBeyondLimit(LinkwrightError):
         )
 
 
+class MoveRefused(LinkwrightError):
+    """A move passes a pose that it must not: `found` says what, `time` when [s], NaN where it is not known yet."""
+
+    exit_status = 1
+
+    def __init__(self, found: str, time: float, pose: Sequence[float]) -> None:
+        self.found, self.time, self.pose = found, time, tuple(float(v) for v in pose)
+        when = "" if math.isnan(time) else f" at t = {time:.6g} s"
+        super().__init__(
+            f"move{when}, about pose ({', '.join(f'{v:.6g}' for v in self.pose)}): found {found}; "
+            "expected every pose within reach and within the ranges, and none singular"
+        )
+
+
 class TimingFailed(LinkwrightError):
     """No time law was found for what was asked."""
 
@@ -110,7 +125,7 @@ class LimitsExceeded(LinkwrightError):
     def __init__(self, failures: Mapping[str, float], bound: float) -> None:
         self.failures, self.bound = dict(failures), bound
         what = ", ".join(f"{name} at {value:.6g}" for name, value in self.failures.items())
-        super().__init__(f"verification: {what} of its limit; expected at most {bound:.6g}")
+        super().__init__(f"the motion has {what} of its limit; expected at most {bound:.6g}")
 
 
 class SetpointFileError(LinkwrightError):

@@ -58,10 +58,10 @@ def interval_rows(robot: Mechanism, path: Path, limits: Limits, payload: float, 
     """
     count, half = len(robot.joint_names), np.diff(edges)[:, None] / 2
     middle, low, high = _path_boxes(path, edges)
-    values, slopes = _programs(robot, payload)
-    (found,) = evaluate(values, *middle)
-    (ends,) = evaluate(values, *path.evaluate(edges, 2))
-    steepest = np.abs(enclose(slopes, low, high)).max(axis=0)
+    values, slopes = _programs(robot)
+    (found,) = evaluate(values, *middle, np.full((len(half), 1), payload))
+    (ends,) = evaluate(values, *path.evaluate(edges, 2), np.full((edges.size, 1), payload))
+    steepest = np.abs(enclose(slopes, *(np.insert(v, v.shape[1], payload, axis=1) for v in (low, high)))).max(axis=0)
     radius = np.nan_to_num(steepest * half, nan=np.inf) + _SLACK * (1.0 + np.abs(found))
 
     def of(part: int) -> tuple[Array, Array]:
@@ -121,9 +121,12 @@ def _path_boxes(path: Path, edges: Array) -> tuple[list[Array], Array, Array]:
 
 
 @lru_cache(maxsize=16)
-def _programs(robot: Mechanism, payload: float) -> tuple[BlockProgram, BoxProgram]:
-    """Torque's a, b, c and w and the actuators' first two derivatives by s, (m,) each side by side; their slopes."""
-    model = robot.model()
+def _programs(robot: Mechanism) -> tuple[BlockProgram, BoxProgram]:
+    """Torque's a, b, c and w and the actuators' first two derivatives by s, (m,) each side by side; their slopes.
+
+    Of the pose, its derivatives by s and the payload.
+    """
+    model, payload = robot.model(), ca.SX.sym("payload")
     first, second, third = (ca.SX.sym(name, model.pose.shape[0]) for name in ("first", "second", "third"))
     velocity, acceleration = (ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration"))
     tau = torques(robot, payload, velocity, acceleration)
@@ -142,8 +145,10 @@ def _programs(robot: Mechanism, payload: float) -> tuple[BlockProgram, BoxProgra
     slopes = ca.jtimes(values, state, following)
     fixed, inputs = robot.geometry.vector().tolist(), [model.pose, first, second]
     in_numbers = ca.substitute(values, model.geometry, ca.SX(fixed))
-    slope = ca.Function("slopes", [*inputs, third, model.geometry], [ca.cse(ca.densify(slopes))])
-    return bulk(ca.Function("values", inputs, [ca.densify(in_numbers)])), BoxProgram.of(Program.of(slope), fixed)
+    slope = ca.Function("slopes", [*inputs, third, payload, model.geometry], [ca.cse(ca.densify(slopes))])
+    return bulk(ca.Function("values", [*inputs, payload], [ca.densify(in_numbers)])), BoxProgram.of(
+        Program.of(slope), fixed
+    )
 
 
 def _tool_rows(path: Path, edges: Array, middle: list[Array], low: Array, high: Array) -> Array:

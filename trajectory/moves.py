@@ -1,56 +1,61 @@
-"""Jerk-limited moves in joint space (ruckig): from pose to pose, and from motion to rest; the only ruckig importer.
+"""Jerk-limited moves from pose to pose, and from motion to rest: to set up, to approach, to stop off the path.
 
-Berscheid and Kroeger, "Jerk-limited real-time trajectory generation with arbitrary target states", RSS 2021. One move
-from state to state: intermediate waypoints are never used, since this edition of ruckig sends them to a cloud.
-The pose follows from the forward model, and must exist and come back by the inverse model all along.
+A move goes on a straight line of the joints where these can move freely of each other and the line keeps to the joints'
+ranges without a singularity; otherwise on a straight line of the pose. The pose is followed from where the move starts,
+never found anew, so that it stays in its assembly mode.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from ruckig import (
-    ControlInterface,
-    DurationDiscretization,
-    InputParameter,
-    Result,
-    Ruckig,
-    RuckigError,
-    Synchronization,
-    Trajectory,
-)
 
 from kinematics import InvalidValue, Mechanism
 from kinematics.drives import from_actuators, to_actuators
 from kinematics.dynamics import inverse_dynamics
 from kinematics.motion import actuator_motion
 from kinematics.shapes import checked
-from trajectory.errors import LimitsExceeded, TimingFailed
+from trajectory.errors import LimitsExceeded, MoveRefused
 from trajectory.limits import Limits
 from trajectory.path import Array
+from trajectory.ruckig_plan import AxisLimits, Profile, fastest_move, fastest_stop
 from trajectory.setpoints import Setpoints, robot_header
 
-PARTS = 10  # of each period, at which the limits and the forward model are checked
+PARTS = 10  # of each period, at which limits, ranges and the pose are checked
 _ROUNDING = 1e-9  # of a limit: ruckig's profiles touch the limits
-_SAME_JOINTS = 1e-7  # how far the joints may be from those of their own pose
+_SAME_JOINTS = 1e-7  # rad, or of the robot's size: how far joints may be from those of their own pose
+_GRID = 201  # poses of a line, from which its first limits come
+_ROUNDS = 30  # of slowing a line of the pose down
+_SLOWER = 1.01  # at least, in each round
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Move:
     """A move that was checked.
 
     Attributes:
         setpoints: one a period; the last one is at rest, and holds.
         duration: a whole number of periods [s].
-        peak_over_limit: of the joints' speed, acceleration and jerk, and of the torque where it is limited.
+        peak_over_limit: of the joints' speed, acceleration and jerk, and of what else is limited.
     """
 
     setpoints: Setpoints
     duration: float
     peak_over_limit: dict[str, float]
+
+
+class _Way(NamedTuple):
+    """A move at every part of a period: times (k,), poses (k, n), actuators' motion and torque (k, m)."""
+
+    times: Array
+    pose: Array
+    position: Array
+    speed: Array
+    acceleration: Array
+    torque: Array
 
 
 def plan_move(
@@ -62,31 +67,41 @@ def plan_move(
     period: float,
     joint_units: tuple[str, ...],
 ) -> Move:
-    """The fastest jerk-limited move of the joints from rest to rest, sampled each period.
+    """A jerk-limited move from rest to rest, sampled each period; the fastest on its line.
 
     Args:
-        robot: any mechanism with as many joints as freedoms.
+        robot: any mechanism.
         start: (n,) the pose to start from, such as the robot's home.
         target: (n,) the pose to reach, such as a cycle's start.
-        limits: speed, acceleration and jerk are kept by the plan; torque is checked where given.
+        limits: speed, acceleration and jerk are kept by the plan; torque, torque at speed and position are checked.
         payload: mass at the tool [kg].
         period: of the drives' bus; the duration is a whole number of periods [s].
         joint_units: rad or m for each joint.
 
     Raises:
-        InvalidValue: a redundant robot, no acceleration or jerk limit, a tool limit, or an impossible period.
+        InvalidValue: no acceleration or jerk limit, a tool limit, or an impossible period.
         UnreachablePose: start or target.
-        TimingFailed: ruckig reports anything but success, or a pose on the way does not exist.
+        MoveRefused: a pose on the way leaves a range, is singular or out of reach.
+        TimingFailed: the planner reports anything but success.
         LimitsExceeded: a limit is broken on the way.
     """
-    _require_usable(robot, limits, period)
+    _require_usable(limits, period)
     ends = np.stack([np.asarray(start, dtype=float), np.asarray(target, dtype=float)])
     robot.require_reachable(ends)
     joints = to_actuators(robot, robot.inverse(ends))
-    given = _input(limits, joints.shape[1])
-    given.current_position, given.target_position = joints[0].tolist(), joints[1].tolist()
     asked = {"start": ends[0].tolist(), "target": ends[1].tolist()}
-    return _move(robot, given, limits, payload, period, joint_units, asked)
+    wanted = {**limits.as_dict(), "period": period, **asked}
+    if len(robot.joint_names) == len(robot.pose_names):
+        try:
+            profile = fastest_move(joints[0], joints[1], _axis_limits(limits, joints.shape[1]), period, PARTS, wanted)
+            way = _of_joints(robot, profile, ends[0], payload)
+            _require_in_ranges(robot, way, limits)
+        except MoveRefused:
+            pass
+        else:
+            return _move(robot, way, limits, payload, period, joint_units, asked)
+    way = _of_pose(robot, ends, limits, payload, period, wanted)
+    return _move(robot, way, limits, payload, period, joint_units, asked)
 
 
 def plan_stop(
@@ -96,144 +111,184 @@ def plan_stop(
     payload: float,
     period: float,
     joint_units: tuple[str, ...],
+    near: Array | None = None,
 ) -> Move:
     """The fastest jerk-limited stop of the joints, wherever that is; it leaves the path (`emergency_stop` does not).
 
     Args:
-        robot, limits, payload, period, joint_units: as for `plan_move`.
+        robot, limits, payload, period, joint_units: as for `plan_move`; as many joints as freedoms.
         state: (m,) positions, speeds and accelerations of the actuators when the stop starts.
+        near: (n,) a pose about where the stop starts; home by default.
 
     Raises:
-        As `plan_move`; TimingFailed too where the state itself is beyond a limit, or no rest can be reached.
+        As `plan_move`; InvalidValue for a redundant robot too, and TimingFailed where the state itself is beyond a
+        limit, or no rest can be reached.
     """
-    _require_usable(robot, limits, period)
-    position, speed, acceleration = (checked(v, "state", robot.actuator_names).tolist() for v in state)
-    given = _input(limits, len(position))
-    given.control_interface = ControlInterface.Velocity
-    given.current_position, given.current_velocity, given.current_acceleration = position, speed, acceleration
-    asked = {"state": {"joints": position, "speed": speed, "acceleration": acceleration}}
-    return _move(robot, given, limits, payload, period, joint_units, asked)
-
-
-def _input(limits: Limits, count: int) -> InputParameter:
-    """At rest, within the limits; where from and where to is left to fill in."""
-    given = InputParameter(count)
-    given.max_velocity = _needed(limits, "speed", count)
-    given.max_acceleration = _needed(limits, "acceleration", count)
-    given.max_jerk = _needed(limits, "jerk", count)
-    given.duration_discretization = DurationDiscretization.Discrete
-    given.synchronization = Synchronization.Phase  # a straight line of the joints: apart, they would spin the tool
-    return given
+    _require_usable(limits, period)
+    if len(robot.joint_names) != len(robot.pose_names):
+        expected = f"{len(robot.pose_names)}, as many as freedoms: redundant joints cannot move freely of each other"
+        raise InvalidValue(
+            f"joints of {type(robot).__name__} for a stop of the joints", len(robot.joint_names), expected
+        )
+    given = [checked(v, "state", robot.actuator_names) for v in state]
+    asked = {"state": dict(zip(("joints", "speed", "acceleration"), (v.tolist() for v in given), strict=True))}
+    wanted = {**limits.as_dict(), "period": period, **asked}
+    limited = _axis_limits(limits, given[0].size)
+    profile = fastest_stop((given[0], given[1], given[2]), limited, period, PARTS, wanted)
+    way = _of_joints(robot, profile, robot.home if near is None else checked(near, "near", robot.pose_names), payload)
+    _require_in_ranges(robot, way, limits)
+    return _move(robot, way, limits, payload, period, joint_units, asked)
 
 
 def _move(
     robot: Mechanism,
-    given: InputParameter,
+    way: _Way,
     limits: Limits,
     payload: float,
     period: float,
     joint_units: tuple[str, ...],
     asked: dict[str, Any],
 ) -> Move:
-    """Plan, check between the periods and sample; `asked` goes into the header and into errors."""
-    wanted = {**limits.as_dict(), "period": period, **asked}
-    plan = _plan(given, period, wanted)
-    count = max(1, round(plan.duration / period))  # a period at rest where the target is the start
-    if plan.duration > 0.0 and abs(count * period - plan.duration) > _ROUNDING * period:
-        raise TimingFailed("ruckig", wanted, f"{plan.duration} s is no whole number of periods")
-    times = np.round(np.arange(count * PARTS + 1) * (period / PARTS), 12)
-    dense = _samples(plan, np.minimum(times, plan.duration))
-    pose = _poses(robot, dense[0], times, wanted)
-    torque = _torque(robot, payload, pose, dense)
-    found = _peaks(dense, torque, limits, period / PARTS)
+    """Check the limits and sample; `asked` goes into the header."""
+    found = _peaks(way, limits)
     over = {name: value for name, value in found.items() if not value <= 1.0 + _ROUNDING}
     if over:
         raise LimitsExceeded(over, 1.0)
-    table = np.concatenate([times[:, None], pose, *dense, torque], axis=1)[::PARTS]
+    table = np.concatenate([way.times[:, None], *way[1:]], axis=1)[::PARTS]
+    count = len(table) - 1
     header = robot_header(robot, limits) | {"laws": ["ruckig"], "payload [kg]": payload} | asked
     header |= {"period [s]": float(period), "periods": [count]}
-    return Move(
-        Setpoints.of_table(table, robot.pose_names, robot.actuator_names, joint_units, header), count * period, found
-    )
+    points = Setpoints.of_table(table, robot.pose_names, robot.actuator_names, joint_units, header)
+    return Move(points, count * period, found)
 
 
-def _require_usable(robot: Mechanism, limits: Limits, period: float) -> None:
-    if len(robot.joint_names) != len(robot.pose_names):
-        expected = f"{len(robot.pose_names)}, as many as freedoms: redundant joints cannot move freely of each other"
-        raise InvalidValue(
-            f"joints of {type(robot).__name__} for a move of the joints", len(robot.joint_names), expected
+def _of_joints(robot: Mechanism, profile: Profile, near: Array, payload: float) -> _Way:
+    """The poses of joints that move by a profile, followed from a pose near its start.
+
+    Raises:
+        MoveRefused: a pose on the way does not exist, or belongs to another working mode.
+    """
+    joints = from_actuators(robot, profile.position)
+    first = robot.forward(joints[0], near=near)
+    pose = robot.forward(joints, near=first)
+    missing = ~np.isfinite(pose).all(axis=-1)
+    if missing.any():
+        k = int(np.argmax(missing))
+        raise MoveRefused(
+            "no pose without passing a singularity", float(profile.times[k]), pose[max(k - 1, 0)].tolist()
         )
+    unit = np.array([1.0 if name == "rad" else robot.geometry.size for name in robot.joint_units])
+    away = ~((np.abs(robot.inverse(pose) - joints) / unit).max(axis=-1) <= _SAME_JOINTS)
+    if away.any():
+        k = int(np.argmax(away))
+        raise MoveRefused("another working mode", float(profile.times[k]), pose[k].tolist())
+    # The pose's velocity and acceleration solve q' = J v and q'' = J a + J' v.
+    jacobian, none = robot.actuator_jacobian(pose), np.zeros_like(pose)
+    rates = robot.pose_rates(pose)
+    velocity = np.einsum("kij,kj->ki", rates, np.linalg.solve(jacobian, profile.speed[..., None])[..., 0])
+    bias = actuator_motion(robot, pose, velocity, none, none).second
+    left = np.linalg.solve(jacobian, (profile.acceleration - bias)[..., None])[..., 0]
+    torque = inverse_dynamics(robot, payload, pose, velocity, np.einsum("kij,kj->ki", rates, left))
+    return _Way(profile.times, pose, profile.position, profile.speed, profile.acceleration, torque)
+
+
+def _of_pose(
+    robot: Mechanism, ends: Array, limits: Limits, payload: float, period: float, wanted: dict[str, Any]
+) -> _Way:
+    """The fastest move on the straight line between two poses (2, n): planned along it, and slowed until it fits.
+
+    Raises:
+        MoveRefused: the line leaves a range or the reach.
+        LimitsExceeded: it does not fit however slow.
+    """
+    along, count = ends[1] - ends[0], len(robot.joint_names)
+    grid = ends[0] + np.linspace(0.0, 1.0, _GRID)[:, None] * along
+    rest = np.zeros_like(grid)
+    rate = np.abs(actuator_motion(robot, grid, np.broadcast_to(along, grid.shape), rest, rest).first)
+    lost = ~np.isfinite(rate).all(axis=-1)
+    if lost.any():
+        raise MoveRefused("a limb out of reach", math.nan, grid[int(np.argmax(lost))].tolist())
+    full = [np.array(limit) for limit in _axis_limits(limits, count)]
+    with np.errstate(divide="ignore"):
+        of_line = [float(np.min(limit / rate.max(axis=0), initial=1e12)) for limit in full]
+    slower = 1.0
+    for _ in range(_ROUNDS):
+        scaled = AxisLimits(*([limit / slower**power] for power, limit in enumerate(of_line, start=1)))
+        profile = fastest_move(np.zeros(1), np.ones(1), scaled, period, PARTS, wanted)
+        s, first, second = profile.position, profile.speed, profile.acceleration
+        pose, velocity, acceleration = ends[0] + s * along, first * along, second * along
+        joints = actuator_motion(robot, pose, velocity, acceleration, np.zeros_like(pose))
+        torque = inverse_dynamics(robot, payload, pose, velocity, acceleration)
+        way = _Way(profile.times, pose, joints.position, joints.first, joints.second, torque)
+        _require_in_ranges(robot, way, limits)
+        found = _peaks(way, limits)
+        if max(found.values()) <= 1.0 + _ROUNDING:
+            return way
+        powers = {"speed": 1, "acceleration": 2, "jerk": 3}
+        slower *= max(_SLOWER, *(found[name] ** (1 / power) for name, power in powers.items()))
+    raise LimitsExceeded({name: value for name, value in found.items() if value > 1.0}, 1.0)
+
+
+def _require_in_ranges(robot: Mechanism, way: _Way, limits: Limits) -> None:
+    """Check that every pose of a move is within reach and within the joints' ranges, at rest and passive ones too.
+
+    Raises:
+        MoveRefused: naming the margin, the time and the pose.
+    """
+    for name in ("reach", "joint_travel", "passive_joint"):
+        if name in robot.margins:
+            values = robot.margin(name, way.pose)
+            worst = int(np.nanargmin(np.where(np.isnan(values), -np.inf, values)))
+            if not values[worst] >= -_ROUNDING * robot.geometry.size:
+                found = f"{name} of {values[worst]:.4g}, less than 0"
+                raise MoveRefused(found, float(way.times[worst]), way.pose[worst].tolist())
+    ranges = limits.ranges(len(robot.joint_names))
+    if ranges is None:
+        return
+    beyond = np.maximum(ranges[0] - way.position, way.position - ranges[1]) / (ranges[1] - ranges[0])
+    row, joint = np.unravel_index(int(beyond.argmax()), beyond.shape)
+    if beyond[row, joint] > _ROUNDING:
+        allowed = f"{ranges[0][joint]:g} to {ranges[1][joint]:g}"
+        found = f"{robot.actuator_names[joint]} at {way.position[row, joint]:.6g}, not within {allowed}"
+        raise MoveRefused(found, float(way.times[row]), way.pose[row].tolist())
+
+
+def _require_usable(limits: Limits, period: float) -> None:
     for name in ("tool_speed", "tool_acceleration"):
         if getattr(limits, name) is not None:
             raise InvalidValue(
-                f"Limits {name} for a move of the joints", getattr(limits, name), "None: it moves the joints"
+                f"Limits {name} for a move", getattr(limits, name), "None: a move keeps the joints' limits"
             )
     if limits.rms_torque is not None:
         what = "None: it is a mean over a cycle, which a single move is none of"
-        raise InvalidValue("Limits rms_torque for a move of the joints", limits.rms_torque, what)
+        raise InvalidValue("Limits rms_torque for a move", limits.rms_torque, what)
     if not (math.isfinite(period) and period > 0.0):
         raise InvalidValue("period", period, "a finite time > 0 s")
 
 
-def _plan(given: InputParameter, period: float, asked: dict[str, object]) -> Trajectory:
-    count = given.degrees_of_freedom
-    plan = Trajectory(count)
-    try:
-        result = Ruckig(count, period).calculate(given, plan)
-    except RuckigError as error:
-        raise TimingFailed("ruckig", asked, str(error)) from error
-    if result not in (Result.Working, Result.Finished):
-        raise TimingFailed("ruckig", asked, f"no solution ({Result(result).name})")
-    return plan
+def _axis_limits(limits: Limits, count: int) -> AxisLimits:
+    def needed(name: str) -> list[float]:
+        limit = limits.of_joints(name, count)
+        if limit is None:
+            raise InvalidValue(f"Limits {name} for a move", None, "a limit: a jerk-limited move needs it")
+        return [float(v) for v in limit]
+
+    return AxisLimits(needed("speed"), needed("acceleration"), needed("jerk"))
 
 
-def _needed(limits: Limits, name: str, count: int) -> list[float]:
-    limit = limits.of_joints(name, count)
-    if limit is None:
-        raise InvalidValue(f"Limits {name} for a move of the joints", None, "a limit: a jerk-limited move needs it")
-    return [float(v) for v in limit]
-
-
-def _samples(plan: Trajectory, times: Array) -> tuple[Array, Array, Array]:
-    """Joints, speed and acceleration, (k, m) each; ruckig gives one time at a time."""
-    rows = np.array([plan.at_time(float(t)) for t in times])
-    return rows[:, 0], rows[:, 1], rows[:, 2]
-
-
-def _poses(robot: Mechanism, joints: Array, times: Array, asked: dict[str, object]) -> Array:
-    """(k, n) by the forward model; the working mode of every joint must come back."""
-    pose = robot.forward(from_actuators(robot, joints))
-    missing = ~np.isfinite(pose).all(axis=-1)
-    if missing.any():
-        raise TimingFailed("ruckig", asked, f"no pose at t = {times[int(np.argmax(missing))]:.6g} s")
-    away = ~(np.abs(to_actuators(robot, robot.inverse(pose)) - joints).max(axis=-1) <= _SAME_JOINTS)
-    if away.any():
-        raise TimingFailed("ruckig", asked, f"another working mode at t = {times[int(np.argmax(away))]:.6g} s")
-    return pose
-
-
-def _torque(robot: Mechanism, payload: float, pose: Array, dense: tuple[Array, Array, Array]) -> Array:
-    """(k, m): the pose's velocity and acceleration solve q' = J v and q'' = J a + J' v."""
-    _, speed, acceleration = dense
-    jacobian, none = robot.actuator_jacobian(pose), np.zeros_like(pose)
-    velocity = np.linalg.solve(jacobian, speed[..., None])[..., 0]
-    bias = actuator_motion(robot, pose, velocity, none, none).second
-    pose_acceleration = np.linalg.solve(jacobian, (acceleration - bias)[..., None])[..., 0]
-    return inverse_dynamics(robot, payload, pose, velocity, pose_acceleration)
-
-
-def _peaks(dense: tuple[Array, Array, Array], torque: Array, limits: Limits, step: float) -> dict[str, float]:
+def _peaks(way: _Way, limits: Limits) -> dict[str, float]:
     """Each limited quantity's peak over its limit; the jerk is the mean over each step, and so never above its peak."""
-    joints, speed, acceleration = dense
-    quantities = {"speed": speed, "acceleration": acceleration, "jerk": np.diff(acceleration, axis=0) / step}
+    step = way.times[1] - way.times[0]
+    quantities = {
+        "speed": way.speed,
+        "acceleration": way.acceleration,
+        "jerk": np.diff(way.acceleration, axis=0) / step,
+    }
     if limits.torque is not None:
-        quantities["torque"] = torque
-    count = joints.shape[1]
+        quantities["torque"] = way.torque
+    count = way.position.shape[1]
     found = {name: float((np.abs(v) / limits.of_joints(name, count)).max()) for name, v in quantities.items()}
-    if (ranges := limits.ranges(count)) is not None:
-        middle, half = (ranges[1] + ranges[0]) / 2, (ranges[1] - ranges[0]) / 2
-        found["position"] = float((np.abs(joints - middle) / half).max())
     stall, fastest = limits.of_joints("stall_torque", count), limits.of_joints("no_load_speed", count)
     if stall is not None and fastest is not None:
-        found["torque at speed"] = float((np.abs(torque) / stall + np.abs(speed) / fastest).max())
+        found["torque at speed"] = float((np.abs(way.torque) / stall + np.abs(way.speed) / fastest).max())
     return found

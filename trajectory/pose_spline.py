@@ -51,7 +51,7 @@ class PoseSpline:
         _, motion = self.within(np.array([0.0, 1.0]))
         for field, values in zip(("pose", "velocity", "acceleration"), motion, strict=False):
             gap = np.abs(values[:-1, 1] - values[1:, 0])
-            if not (gap <= _ROUNDING * (1.0 + np.abs(values).max())).all():
+            if not (gap <= _ROUNDING * np.abs(values).max()).all():
                 k = int(gap.max(axis=-1).argmax()) + 1
                 raise InvalidValue(
                     f"PoseSpline {field}", f"a gap of {gap.max():.3g} at knot {k}", "intervals that join"

@@ -28,7 +28,7 @@ ASSUMPTIONS = (
     "rigid bodies; `inertia` states the friction, and by rod_middle how a rod's mass is spread: 0 is half at each end",
     "q'' and the torque are right-hand limits where s'' jumps",
 )
-_CONSISTENT = 1e-9  # of the loop closure [m^2]
+_CONSISTENT = 1e-9  # of the loop closure [rad, or over the robot's size]
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,10 +122,10 @@ class Setpoints:
         expected = (type(robot).__name__, robot.geometry.digest)
         if found != expected:
             raise InvalidValue("mechanism and geometry of the set-points", found, str(expected))
-        residual = np.abs(robot.closure_residual(self.pose, from_actuators(robot, self.joints)))
+        residual = np.abs(robot.closure_gap(self.pose, from_actuators(robot, self.joints)))
         if not residual.max() <= _CONSISTENT:
             row, limb = (int(k) for k in np.unravel_index(int(residual.argmax()), residual.shape))
-            what = f"loop closure of set-point {row}, limb {limb + 1} [m^2]"
+            what = f"loop closure of set-point {row}, limb {limb + 1} [rad, or over the robot's size]"
             raise InvalidValue(what, float(residual[row, limb]), f"at most {_CONSISTENT}: joints that fit the pose")
 
 

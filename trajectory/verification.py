@@ -21,20 +21,20 @@ from kinematics.drives import from_actuators
 from kinematics.shown import rounded_up
 from trajectory.limits import Limits
 from trajectory.motion import Motion, PoseMotion, motion_of
-from trajectory.path import Array, places
+from trajectory.path import Array
 from trajectory.proof import proved_use
 from trajectory.sampling import integrals, settled_parts, way_of
 from trajectory.timed import TimedMotion
 from trajectory.usage import Use, uses
 
 _SMOOTH = 1e-9  # of the largest s'': a smaller jump is rounding
-_TOLERANCES = {  # relative, to the sizes that `Verification.residuals` names; of "forward" SI
+_TOLERANCES = {  # relative, to the sizes that `Verification.residuals` names
     "start pose": 1e-9,
     "end pose": 1e-9,
     "start speed": 1e-9,
     "end speed": 1e-8,  # a pace that stops a motion as it starts ends to 1e-9 of the motion's later speed
     "closure": 1e-9,
-    "forward": 1e-6,
+    "change of assembly mode": 0.5,
     "kink of the path": 2e-8,
     "integral of acceleration": 1e-4,
     "integral of speed": 1e-6,
@@ -65,10 +65,9 @@ class Verification:
         duration: of the motion [s].
         peaks: of joint speed, joint acceleration, torque, tool speed, tool acceleration, joint jerk, rms torque; of
             joint position and torque at speed where they are limited.
-        residuals: of end poses [rad, or over the size of the robot's poses], of end speeds, over the largest speed, of
-            loop closure, over that size squared, of the forward model, SI; of the joints' integrals, over the largest
-            speed and over the way of the joints. That size is the largest distance of the tool point from the origin,
-            or the robot's characteristic length where that is more.
+        residuals: of the end poses [rad, or over the robot's size], of the end speeds over the largest, of the loop
+            closure [rad, or over the robot's size]; how many samples are in another assembly mode; of the joints'
+            integrals, over the largest speed and over the way of the joints.
         reach: the worst limb's margin [m]; negative or NaN fails.
         rms_torque: (m,) over the whole duration [N m or N].
         rms_over_peak: (m,) each joint's RMS torque over its own peak; 0 where it bears none.
@@ -205,11 +204,7 @@ def _jump(times: Array, acceleration: Array, first: Array) -> tuple[float, float
 
 def _residuals(robot: Mechanism, timed: TimedMotion, motion: Motion, before: PoseMotion) -> dict[str, float]:
     pose, joints = motion.tool.pose, from_actuators(robot, motion.joints.position)
-    knots, knot_joints = pose[:, 0], joints[:, 0]
-    by_forward = robot.forward(knot_joints) - knots
-    turns = list(robot.rotations)
-    by_forward[..., turns] = np.remainder(by_forward[..., turns] + math.pi, 2 * math.pi) - math.pi
-    first, units = timed.at(np.array(0.0)), _units(robot, pose)
+    first, units = timed.at(np.array(0.0)), robot.pose_units()
     fastest = _largest(motion.tool.velocity / units)
     return {
         "start pose": _largest((first.pose - before.pose) / units),
@@ -217,16 +212,20 @@ def _residuals(robot: Mechanism, timed: TimedMotion, motion: Motion, before: Pos
         "start speed": _largest((first.velocity - before.velocity) / units) / fastest,
         "end speed": _largest(motion.tool.velocity[-1, -1] / units) / fastest,
         "kink of the path": timed.kink,
-        "closure": _largest(robot.closure_residual(pose, joints)) / units[0] ** 2,
-        "forward": _largest(by_forward),
+        "closure": _largest(robot.closure_gap(pose, joints)),
+        "change of assembly mode": _changes(robot.jacobians(pose[:, 0])[1]),
     }
 
 
-def _units(robot: Mechanism, pose: Array) -> Array:
-    """(n,) what a coordinate is measured by: the size of the robot's poses [m] for a place, 1 rad for an angle."""
-    count = places(robot.pose_names)
-    size = max(float(np.linalg.norm(pose[..., :count], axis=-1).max()), robot.characteristic_length)
-    return np.where(np.arange(pose.shape[-1]) < count, size, 1.0)
+def _changes(j_x: Array) -> float:
+    """How many of J_x (k, m, n) lie on another side of the singularities than the first; 0 with redundant joints.
+
+    A pose that moves continuously cannot change its assembly mode without passing a singularity.
+    """
+    if j_x.shape[-2] != j_x.shape[-1]:
+        return 0.0
+    sides = np.sign(np.linalg.det(j_x[np.isfinite(j_x).all(axis=(-2, -1))]))
+    return float(np.count_nonzero(sides != sides[:1]))
 
 
 def _integral_residuals(times: Array, motion: Motion) -> dict[str, float]:

@@ -10,11 +10,11 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Sequence
-from decimal import Decimal
 from pathlib import Path as FilePath
 
 from trajectory.errors import InvalidPath, WaypointFileError
 from trajectory.rounded import RoundedPath
+from trajectory.units import in_si
 
 Column = tuple[str, str]  # coordinate and unit suffix, "" for SI
 Row = tuple[
@@ -83,26 +83,24 @@ def _row(file: FilePath, number: int, line: str, columns: Sequence[Column]) -> R
     for cell, (name, suffix) in zip(cells, columns, strict=True):
         spelled[name] = (f"{name}_{suffix}" if suffix else name, cell)
         try:
-            values[name] = _in_si(cell, suffix) if cell else None
+            values[name] = _finite_in_si(cell, suffix) if cell else None
         except ValueError:
             raise WaypointFileError(file, number, spelled[name][0], cell, "a finite number") from None
     return number, values, spelled
 
 
-def _in_si(cell: str, suffix: str) -> float:
+def _finite_in_si(cell: str, suffix: str) -> float:
     """Raise ValueError where the cell is no finite number."""
-    number = float(cell)
+    number = in_si(cell, suffix)
     if not math.isfinite(number):
         raise ValueError
-    if suffix == "mm":
-        return float(Decimal(cell).scaleb(-3))  # so that 24.9 mm is the very number that 0.0249 m is
-    return math.radians(number) if suffix == "deg" else number
+    return number
 
 
 def _path(file: FilePath, rows: Sequence[Row], pose_names: tuple[str, ...]) -> RoundedPath:
     if len(rows) < 2:
         line = rows[-1][0] if rows else 1
-        raise WaypointFileError(file, line, "", f"{len(rows)} poses", "at least 2")
+        raise WaypointFileError(file, line, "", f"{len(rows)} pose" if rows else "no poses", "at least 2")
     for number, values, spelled in (rows[0], rows[-1]):
         if values.get(_BLEND):
             raise WaypointFileError(file, number, *spelled[_BLEND], "nothing: the path ends here")

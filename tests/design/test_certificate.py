@@ -9,8 +9,18 @@ import numpy as np
 import pytest
 
 from design import Box, Cylinder, InvalidRegion, Region, best_bound, certify, worst_poses
-from kinematics import FviBounds, GoughStewart, Heli4, Mechanism, Peppermill, Redundant3T1R, threads
-from kinematics.errors import InvalidValue
+from kinematics import (
+    MECHANISMS,
+    FviBounds,
+    GoughStewart,
+    Heli4,
+    Mechanism,
+    Peppermill,
+    Planar3RRR,
+    Redundant3T1R,
+    threads,
+)
+from kinematics.errors import InvalidValue, LinkwrightError
 
 PI = math.pi
 CYLINDER = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-PI, PI))
@@ -131,7 +141,7 @@ def test_a_region_partly_out_of_reach_is_never_proved(margin: str, at_least: flo
 
 def test_a_bound_below_zero_is_not_proved_out_of_reach_either(monkeypatch: pytest.MonkeyPatch) -> None:
     """The moduli are trivially above it wherever they have a value."""
-    monkeypatch.setattr("design.statement.Statement.refutation", lambda *_: None)
+    monkeypatch.setattr("design.refutation.Refuter.refutation", lambda *_: None)
     beyond = Box(x=(0.0, 1.4), y=0.0, z=-0.7, theta=0.0)
     for margin in Heli4.margins:
         found = certify(Heli4(), beyond, margin, at_least=-1e-3, most_boxes=5_000)
@@ -151,7 +161,7 @@ def test_no_margin_of_any_robot_is_proved_beyond_reach(
     for at_least in (-1.0, 1e-9):
         for margin in robot.margins[1:]:
             assert certify(robot, beyond, margin, at_least=at_least, most_boxes=3_000).status == "refuted"
-    monkeypatch.setattr("design.statement.Statement.refutation", lambda *_: None)
+    monkeypatch.setattr("design.refutation.Refuter.refutation", lambda *_: None)
     for at_least in (-1.0, 1e-9):
         for margin in robot.margins[1:]:
             assert certify(robot, beyond, margin, at_least=at_least, most_boxes=3_000).status == "undecided", margin
@@ -251,7 +261,7 @@ class Jumping(Heli4):
 
 @pytest.mark.parametrize("margin", ["branch", "sign", "turn"])
 def test_no_slope_speaks_for_the_far_side_of_a_jump(margin: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("design.statement.Statement.refutation", lambda *_: None)
+    monkeypatch.setattr("design.refutation.Refuter.refutation", lambda *_: None)
     good = (0.11, 0.2) if margin == "turn" else (-0.02, 0.09)
     across, aside = (Box(x=x, y=0.0, z=-0.7, theta=0.0) for x in ((-0.02, 0.2), good))
     assert certify(Jumping(), across, margin, at_least=0.5, most_boxes=5_000).status == "undecided"
@@ -298,7 +308,7 @@ def test_room_is_proved_close_to_the_worst_found_and_refuted_just_above(
 
 def test_a_bound_beyond_the_whole_range_is_never_proved(monkeypatch: pytest.MonkeyPatch) -> None:
     """The sine and cosine of an angle below 0 would allow what the angle does not."""
-    monkeypatch.setattr("design.statement.Statement.refutation", lambda *_: None)
+    monkeypatch.setattr("design.refutation.Refuter.refutation", lambda *_: None)
     for robot, region in ((Heli4(), PART), (GoughStewart(), HEXAPOD)):
         for beyond in (0.1, 2 * math.pi):
             bound = max(robot.ranges.passive) + beyond
@@ -306,8 +316,60 @@ def test_a_bound_beyond_the_whole_range_is_never_proved(monkeypatch: pytest.Monk
 
 
 def test_arms_that_touch_are_never_proved_apart(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("design.statement.Statement.refutation", lambda *_: None)
+    monkeypatch.setattr("design.refutation.Refuter.refutation", lambda *_: None)
     touching = Box(x=0.0, y=(0.3, 0.75), z=(-0.3, -0.15), theta=(-0.3, 0.3))
     assert worst_poses(Redundant3T1R(), touching, "clearance", about=20_000).value < 1e-3
     for bound in (0.0, 0.002):
         assert certify(Redundant3T1R(), touching, "clearance", at_least=bound, most_boxes=4_000).status == "undecided"
+
+
+@pytest.mark.parametrize("turns", [0, 10, 1_000_000, 100_000_000])
+def test_millions_of_turns_away_the_same_is_proved(turns: int) -> None:
+    middle = turns * 2 * PI
+    region = Box(x=(-0.02, 0.02), y=(-0.02, 0.02), theta=(middle - 0.1, middle + 0.1))
+    assert certify(Planar3RRR(), region, "det_J_x", at_least=0.01, most_boxes=1_000).status == "proved"
+
+
+@pytest.mark.parametrize("x", [0.1, (0.1, 0.1), (0.0, 5e-324), (0.1, math.nextafter(0.1, 1.0)), (-1e-300, 1e-300)])
+@pytest.mark.parametrize("at_least", [0.3, 1e-300, 0.0, -0.0, -1e300])
+def test_a_region_of_hardly_any_width_is_decided_as_a_pose_is(x: float | tuple[float, float], at_least: float) -> None:
+    assert certify(Heli4(), Box(x=x, y=0.0, z=-0.7, theta=0.0), "J_q", at_least=at_least).status == "proved"
+    assert certify(Heli4(), Box(x=x, y=0.0, z=-0.7, theta=0.0), "J_q", at_least=1e300).status == "refuted"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("mechanism", list(MECHANISMS.values()), ids=list(MECHANISMS))
+def test_no_answer_about_a_random_robot_is_false(mechanism: type[Mechanism]) -> None:
+    """Random geometries, regions and margins, many of them partly out of reach."""
+    rng = np.random.default_rng(77)
+    for _ in range(60):
+        usual = mechanism()
+        vector = usual.geometry.vector()
+        try:
+            geometry = mechanism.Geometry.from_vector(vector * rng.uniform(0.8, 1.25, len(vector)))
+            robot = mechanism(geometry)
+        except LinkwrightError:
+            continue
+        middle = np.array(robot.home) + rng.normal(0.0, 0.15, len(robot.home))
+        half = 10.0 ** rng.uniform(-3.0, -1.0, len(middle)) * rng.choice([0.0, 1.0], len(middle), p=[0.2, 0.8])
+        region = Box(
+            **{n: (float(m - h), float(m + h)) for n, m, h in zip(robot.pose_names, middle, half, strict=True)}
+        )
+        poses = region.random(robot.pose_names, 5_000, rng)
+        margin = str(rng.choice(robot.margins))
+        values = robot.margin(margin, poses)
+        reached = robot.margin("reach", poses) >= 0.0
+        lowest = float(np.nanmin(values)) if np.isfinite(values).any() else 0.5
+        bound = lowest + float(rng.choice([-1.0, 1.0])) * 10.0 ** rng.uniform(-9.0, -0.5)
+        found = certify(robot, region, margin, at_least=bound, most_boxes=5_000)
+        told = (mechanism.__name__, margin, bound, region, geometry)
+        if found.status == "proved":
+            assert reached.all(), told
+            assert (values >= bound - 1e-12 * max(1.0, abs(bound))).all(), told
+        if found.status == "refuted":
+            pose = found.counterexample
+            assert pose is not None
+            assert region.contains(pose, robot.pose_names), told
+            value = float(robot.margin(margin, pose))
+            assert found.within_reach == bool(robot.margin("reach", pose) >= 0.0), told
+            assert not found.within_reach or value < bound, told

@@ -101,7 +101,7 @@ def test_a_file_keeps_every_bit(tmp_path: Path) -> None:
     for name in (
         "mechanism",
         "digest",
-        "ranges",
+        "conditions",
         "margin",
         "at_least",
         "bounds",
@@ -128,7 +128,7 @@ def test_a_refutation_is_kept_and_replayed(tmp_path: Path) -> None:
     [
         ({"mechanism": "Peppermill"}, "mechanism"),
         ({"digest": "0" * 64}, "geometry"),
-        ({"ranges": "0" * 64}, "joint ranges"),
+        ({"conditions": "0" * 64}, "joint ranges or working mode"),
         ({"version": "0.0.0"}, "version"),
     ],
 )
@@ -139,7 +139,7 @@ def test_a_certificate_for_something_else_is_refused(change: dict[str, str], wha
 
 
 def test_another_geometry_region_margin_or_bound_is_refused() -> None:
-    with pytest.raises(OtherCertificate, match="joint ranges"):
+    with pytest.raises(OtherCertificate, match="joint ranges or working mode"):
         replay(_proved(), Heli4(ranges=Heli4.Ranges(passive=(0.9, 1.0))))
     other = Heli4(Heli4.Geometry(arm_length=0.3510001))
     with pytest.raises(OtherCertificate, match="geometry"):

@@ -15,7 +15,7 @@ from design import (
     Cylinder,
     InvalidRegion,
     InvalidSection,
-    NotConverged,
+    OutOfTime,
     Section,
     index_names,
     index_of,
@@ -220,6 +220,16 @@ def test_where_nothing_is_seen_the_finest_grid_was_looked_at_and_says_its_step()
     assert found.step == pytest.approx((2.0 / (FINEST - 1),) * 2)
 
 
+def test_a_map_of_reach_counts_what_is_in_reach_whatever_the_bound() -> None:
+    robot, section = Heli4(), Section(Box(x=(-1.5, 1.5), y=(-1.5, 1.5), z=-0.7, theta=0.0), ("x", "y"))
+    index = index_of(robot, "reach")
+    areas = [level_set(index, section, NAMES, bound).figures.area for bound in (None, -1.0, 0.0)]
+    assert areas == [areas[0]] * 3
+    poses = section.region.random(NAMES, 100_000, np.random.default_rng(3))
+    share = float((robot.margin("reach", poses) >= 0.0).mean())
+    assert areas[0] == pytest.approx(9.0 * share, rel=0.02)
+
+
 def test_a_plane_out_of_reach_is_empty_and_so_is_its_boundary() -> None:
     beyond = Cylinder(radius=0.5, z=(2.5, 2.5), theta=(0.5, 0.5))
     found = level_set(index_of(Heli4(), "fvi"), Section(beyond, ("x", "y")), NAMES, None)
@@ -228,11 +238,47 @@ def test_a_plane_out_of_reach_is_empty_and_so_is_its_boundary() -> None:
     assert found.map.lowest[0] == -np.inf
 
 
-def test_figures_that_do_not_stand_still_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_figures_that_do_not_stand_still_say_how_far_they_still_move(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("design.level_sets.FINEST", 129)
     noise = np.random.default_rng(0)
-    with pytest.raises(NotConverged, match="still moves"):
-        level_set(made(lambda p: noise.random(p.shape[:-1])), Section(SQUARE, ("x", "y")), NAMES, 0.5, 1e-6)
+    found = level_set(made(lambda p: noise.random(p.shape[:-1])), Section(SQUARE, ("x", "y")), NAMES, 0.5, 1e-6)
+    assert not found.settled
+    assert found.moved > found.tolerance == 1e-6
+    assert found.moved == found.figures.moved(found.coarser, 4.0)
+    assert found.figures.area == pytest.approx(2.0, abs=0.2)
+
+
+@pytest.mark.parametrize("share", [1e-5, 1e-9, 1e-15])
+def test_a_part_of_a_billionth_of_the_plane_is_measured(share: float) -> None:
+    """Under a cone and under a cap, both far narrower than the finest grid's step."""
+    x, y, area = 0.1234567, -0.3456789, 4.0 * share
+    cap = made(lambda p: 1.0 - (p[..., 0] - x) ** 2 - (p[..., 1] - y) ** 2)
+    cone = made(lambda p: 1.0 - np.hypot(p[..., 0] - x, 2.0 * (p[..., 1] - y + 0.3 * p[..., 0])))
+    for index, bound in ((cap, 1.0 - area / PI), (cone, 1.0 - math.sqrt(2.0 * area / PI))):
+        found = level_set(index, Section(SQUARE, ("x", "y")), NAMES, bound)
+        true = PI * (1.0 - bound) if index is cap else 0.5 * PI * (1.0 - bound) ** 2  # of the bound as it is rounded
+        assert found.settled
+        assert found.figures.area == pytest.approx(true, rel=2e-2)
+        assert found.boundary
+
+
+def test_a_part_at_the_regions_circle_that_is_narrower_than_the_grid_is_measured() -> None:
+    disc = Cylinder(radius=1.0, z=0.0, theta=0.0)
+    tip = made(lambda p: p[..., 0])
+    found = level_set(tip, Section(disc, ("x", "y")), NAMES, 1.0 - 1e-9)
+    half = math.acos(1.0 - 1e-9)
+    assert found.figures.area == pytest.approx(half - math.sin(half) * math.cos(half), rel=2e-2)
+
+
+def test_a_map_says_when_its_time_was_too_short_and_a_level_set_what_it_reached() -> None:
+    with pytest.raises(OutOfTime, match="map of fvi"):
+        map_of(index_of(Heli4(), "fvi"), Section(HELI, ("x", "y")), NAMES, (200, 200), seconds=1e-6)
+    found = level_set(index_of(Heli4(), "fvi"), Section(HELI, ("x", "y")), NAMES, 0.99, 1e-9, seconds=3.0)
+    assert not found.settled
+    assert found.figures.area > 0.0
+    for wrong in (0.0, math.nan, "1", True):
+        with pytest.raises(InvalidValue, match="seconds"):
+            level_set(index_of(Heli4(), "fvi"), Section(HELI, ("x", "y")), NAMES, 1.0, seconds=wrong)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(

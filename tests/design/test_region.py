@@ -62,6 +62,11 @@ def test_the_coordinates_may_come_in_any_order() -> None:
         (lambda: Box(z=(0.0, math.inf)), "z"),
         (lambda: Box(z=(0.0, 1.0, 2.0)), "z"),
         (lambda: Box(z="a"), "z"),
+        (lambda: Box(z=True), "z"),
+        (lambda: Box(z=1e300), "z"),
+        (lambda: Cylinder(radius=1e300), "radius"),
+        (lambda: Cylinder(radius=True), "radius"),
+        (lambda: Cylinder(radius=math.nan), "radius"),
         (lambda: Cylinder(radius="a"), "radius"),
     ],
 )
@@ -82,6 +87,24 @@ def test_the_outline_of_a_cylinder_lies_on_its_wall() -> None:
     for ring in CYLINDER.outline():
         np.testing.assert_allclose(np.hypot(ring[:, 0], ring[:, 1]), 0.5)
     assert len(BOX.outline()) == 12
+
+
+def test_a_pose_beyond_a_bound_by_rounding_is_inside_in_every_size() -> None:
+    for size in (1e-6, 1.0, 1e6):
+        box = Box(x=(0.0, size), y=0.0, z=0.0, theta=0.0)
+        disc = Cylinder(radius=size, z=0.0, theta=0.0)
+        for region in (box, disc):
+            for beyond, inside in ((1e-13, True), (1e-11, False)):
+                pose = np.array([size * (1.0 + beyond), 0.0, 0.0, 0.0])
+                assert region.contains(pose, NAMES) == inside
+
+
+def test_six_coordinates_are_spread_over_corners_and_middles() -> None:
+    names = ("x", "y", "z", "roll", "pitch", "yaw")
+    spread = Box(**dict.fromkeys(names, (-1.0, 1.0))).spread(names)
+    assert len(spread) == 2**6 + 2 * 6 + 1
+    assert (np.abs(spread).min(axis=0) == 0.0).all()
+    assert set(np.unique(spread)) == {-1.0, 0.0, 1.0}
 
 
 def test_numpy_numbers_are_numbers() -> None:

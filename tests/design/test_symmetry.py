@@ -70,7 +70,7 @@ def test_a_wrong_mirror_is_not_used_and_a_certificate_that_relies_on_it_is_broke
     worst = [worst_poses(ROBOT, side, "fvi", about=20_000).value for side in sides]
     assert worst[0] < worst[1] - 0.01
     bound = 0.3 * worst[0] + 0.7 * worst[1]
-    monkeypatch.setattr("design.statement.Statement.refutation", lambda *_: None)
+    monkeypatch.setattr("design.refutation.Refuter.refutation", lambda *_: None)
     honest = certify(Wrong(), ONE_WAY, "fvi", at_least=bound, most_boxes=3_000)
     assert honest.mirrors == ()
     assert honest.status == "undecided"

@@ -105,7 +105,7 @@ def centre_and_spread(kind: type) -> tuple[np.ndarray, np.ndarray]:
         Hexa: [0.1, 0.1, 0.05, 0.4, 0.4, 0.4],
         Par4: [0.3, 0.3, 0.1, np.pi],
     }[kind]
-    return np.array(kind.home), np.array(spread)
+    return np.array(kind().home), np.array(spread)
 
 
 def poses_of(kind: type, count: int, seed: int, share: float = 1.0) -> np.ndarray:

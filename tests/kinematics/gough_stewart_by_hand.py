@@ -32,7 +32,7 @@ def random_robot(rng: np.random.Generator, planar: bool = False, frames: bool = 
 
 def random_poses(rng: np.random.Generator, count: int) -> Array:
     """(count, 6) within 0.15 m and 0.35 rad of home in each coordinate."""
-    return np.array(GoughStewart.home) + rng.uniform(-1.0, 1.0, (count, 6)) * AROUND_HOME
+    return np.array(GoughStewart().home) + rng.uniform(-1.0, 1.0, (count, 6)) * AROUND_HOME
 
 
 def anywhere(rng: np.random.Generator, count: int) -> Array:

@@ -15,25 +15,27 @@ from kinematics.architectures import (
 )
 from kinematics.errors import InvalidValue
 
-CHAPTER = {  # N and a leg's freedoms d, as the text states them
-    "planar R-P-R": (3, 3),
-    "planar P-R-R": (3, 3),
-    "planar R-R-R": (3, 3),
-    "spatial R-P-(RRR)": (3, 5),
-    "spatial R-(RR)-(RR)": (3, 5),
-    "Gough-Stewart (RR)-P-(RRR)": (6, 6),
-    "hexapod R-(RR)-(RRR)": (6, 6),
-    "C5 P-(RRRPP)": (6, 6),
-    "Space robot R-R-P-(RRR)": (6, 6),
-    "Delta R-(RR)-(RR)": (3, 5),
-    "Hexa R-(RR)-(RRR)": (6, 6),
+CHAPTER = {  # N, legs n_c, a leg's freedoms d, constraints c_j of a loop, as the text states them
+    "planar R-P-R": (3, 3, 3, 3),
+    "planar P-R-R": (3, 3, 3, 3),
+    "planar R-R-R": (3, 3, 3, 3),
+    "spatial R-P-(RRR)": (3, 3, 5, 6),
+    "spatial R-(RR)-(RR)": (3, 3, 5, 6),
+    "Gough-Stewart (RR)-P-(RRR)": (6, 6, 6, 6),
+    "hexapod R-(RR)-(RRR)": (6, 6, 6, 6),
+    "C5 P-(RRRPP)": (6, 6, 6, 6),
+    "Space robot R-R-P-(RRR)": (6, 3, 6, 6),
+    "Delta R-(RR)-(RR)": (3, 3, 5, 6),
+    "Hexa R-(RR)-(RRR)": (6, 6, 6, 6),
 }
 
 
 @pytest.mark.parametrize("name", sorted(CHAPTER | ARCHITECTURES))
-def test_each_architecture_has_the_mobility_and_the_freedoms_that_the_chapter_states(name: str) -> None:
+def test_each_architecture_has_the_mobility_legs_freedoms_and_loops_that_the_chapter_states(name: str) -> None:
     architecture = ARCHITECTURES[name]
-    assert (architecture.mobility, architecture.freedoms) == CHAPTER[name]
+    found = architecture.mobility, architecture.legs, architecture.freedoms, architecture.constraints
+    assert found == CHAPTER[name]
+    assert name.split()[-1] == "-".join(j if len(j) == 1 else f"({j})" for j in architecture.joints)
     same = mobility_of_identical_chains(architecture.legs, architecture.freedoms, architecture.constraints)
     assert same == architecture.mobility
 

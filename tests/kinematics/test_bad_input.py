@@ -40,9 +40,9 @@ def test_a_nan_pose_gives_nan_and_spoils_no_other(method, column):
 
 
 def test_a_nan_pose_gives_a_row_of_nan_joints_and_back():
-    poses = np.array([Heli4.home, [0, 0, np.nan, 0]])
+    poses = np.array([Heli4().home, [0, 0, np.nan, 0]])
     assert np.isnan(ROBOT.inverse(poses)).tolist() == [[False] * 4, [True] * 4]
-    joints = ROBOT.inverse([Heli4.home] * 2)
+    joints = ROBOT.inverse([Heli4().home] * 2)
     joints[1, 2] = np.nan
     assert np.isnan(ROBOT.forward(joints)).tolist() == [[False] * 4, [True] * 4]
     assert ROBOT.assembly_modes(joints[1]).shape == (0, 4)
@@ -54,7 +54,7 @@ def test_joints_that_cannot_close_give_nan():
 
 
 def test_out_of_reach_names_the_worst_pose_its_limb_and_margin():
-    poses = np.array([Heli4.home, [0.3, 0.0, -0.7, 0.0], [0.0, -0.95, -0.7, 0.0], [0.85, 0.0, -0.7, 0.0]])
+    poses = np.array([Heli4().home, [0.3, 0.0, -0.7, 0.0], [0.0, -0.95, -0.7, 0.0], [0.85, 0.0, -0.7, 0.0]])
     with pytest.raises(UnreachablePose) as error:
         ROBOT.require_reachable(poses)
     assert error.value.pose == tuple(poses[2])
@@ -108,7 +108,7 @@ def test_a_geometry_error_names_its_field(field, value, expected):
 
 def test_signed_lengths_and_left_handed_screws_are_fine():
     geometry = Heli4.Geometry(height_step=-0.1, plate_offset=-0.02, pitch=-0.05)
-    assert np.isfinite(Heli4(geometry).inverse(Heli4.home)).all()
+    assert np.isfinite(Heli4(geometry).inverse(Heli4().home)).all()
 
 
 @given(st.lists(st.floats(0.01, 2.0), min_size=12, max_size=12))

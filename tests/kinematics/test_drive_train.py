@@ -23,7 +23,7 @@ def with_drives(kind, **drives):
 def test_friction_takes_the_power_that_it_turns_into_heat(kind):
     """Over the bare robot: f . v = sum coulomb |v| + viscous v^2 at the actuators."""
     rng, n = np.random.default_rng(1), len(kind.pose_names)
-    pose = np.array(kind.home) + rng.uniform(-0.02, 0.02, (10, n))
+    pose = np.array(kind().home) + rng.uniform(-0.02, 0.02, (10, n))
     rates, none = rng.normal(size=(10, n)), np.zeros((10, n))
     bare, rough = kind(), with_drives(kind, coulomb=3.0, viscous=0.7)
     added = inverse_dynamics(rough, 0.0, pose, rates, none) - inverse_dynamics(bare, 0.0, pose, rates, none)
@@ -38,7 +38,7 @@ def test_friction_takes_the_power_that_it_turns_into_heat(kind):
 def test_a_motor_behind_a_gear_is_felt_by_the_square_of_its_ratio(kind):
     """From rest, the motors' inertia torque over that of the gear's output."""
     rng, n = np.random.default_rng(2), len(kind.pose_names)
-    pose, none = np.array(kind.home) + rng.uniform(-0.02, 0.02, (10, n)), np.zeros((10, n))
+    pose, none = np.array(kind().home) + rng.uniform(-0.02, 0.02, (10, n)), np.zeros((10, n))
     acceleration = rng.normal(size=(10, n))
     direct = inverse_dynamics(with_drives(kind, motor_inertia=1e-3), 0.0, pose, none, acceleration)
     geared = inverse_dynamics(with_drives(kind, motor_inertia=1e-3, gear_ratio=9.0), 0.0, pose, none, acceleration)
@@ -48,7 +48,7 @@ def test_a_motor_behind_a_gear_is_felt_by_the_square_of_its_ratio(kind):
 
 
 def test_a_drive_at_rest_bears_no_friction():
-    args = (1.0, Heli4.home, REST, np.array([0.0, 0.0, 10.0, 0.0]))
+    args = (1.0, Heli4().home, REST, np.array([0.0, 0.0, 10.0, 0.0]))
     rough = with_drives(Heli4, coulomb=5.0, viscous=1.0)
     at_rest = inverse_dynamics(Heli4(), *args)
     np.testing.assert_allclose(inverse_dynamics(rough, *args), at_rest, rtol=1e-14)  # two programs, rounded apart
@@ -81,7 +81,7 @@ def test_rods_of_any_kind_weigh_the_same_at_rest(kind):
     """The weight of a rod acts at its middle however it is spread; a rod's inertia shows in motion only."""
     n = len(kind.pose_names)
     uniform = kind(inertia=kind.Inertia(rod_middle=UNIFORM))
-    pose, none = np.array(kind.home) + 0.01, np.zeros(n)
+    pose, none = np.array(kind().home) + 0.01, np.zeros(n)
     at_rest = [inverse_dynamics(robot, 1.0, pose, none, none) for robot in (kind(), uniform)]
     np.testing.assert_allclose(*at_rest, rtol=1e-9, atol=1e-9)
     moving = [inverse_dynamics(robot, 1.0, pose, none, none + 5.0) for robot in (kind(), uniform)]

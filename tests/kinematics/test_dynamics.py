@@ -77,7 +77,7 @@ def test_a_heavier_payload_takes_more_torque_in_proportion():
     still = np.zeros(4)
     for acceleration in ([0, 0, 0, 0], [0, 0, 30.0, 0], [0, 0, -5.0, 0]):
         torques = np.array(
-            [inverse_dynamics(Heli4(), m, Heli4.home, still, acceleration) for m in (0.0, 1.0, 2.0, 3.0)]
+            [inverse_dynamics(Heli4(), m, Heli4().home, still, acceleration) for m in (0.0, 1.0, 2.0, 3.0)]
         )
         steps = np.diff(np.abs(torques).sum(-1))
         assert (steps > 0).all()
@@ -85,14 +85,14 @@ def test_a_heavier_payload_takes_more_torque_in_proportion():
 
 
 def test_free_fall_of_the_payload_takes_no_torque_for_it():
-    pose, still = np.array(Heli4.home), np.zeros(4)
+    pose, still = np.array(Heli4().home), np.zeros(4)
     falling = np.array([0, 0, -G, 0])
     empty, full = (inverse_dynamics(Heli4(), m, pose, still, falling) for m in (0.0, 5.0))
     assert np.abs(full - empty).max() < 1e-12
 
 
 def test_shapes_broadcast_and_out_of_reach_is_nan():
-    poses = np.array([[Heli4.home, [2.0, 0.0, -0.7, 0.0]]] * 3)
+    poses = np.array([[Heli4().home, [2.0, 0.0, -0.7, 0.0]]] * 3)
     torque = inverse_dynamics(Heli4(), 0.0, poses, np.zeros(4), np.zeros((2, 4)))
     assert torque.shape == (3, 2, 4)
     assert np.isnan(torque).all(-1).tolist() == [[False, True]] * 3
@@ -100,4 +100,4 @@ def test_shapes_broadcast_and_out_of_reach_is_nan():
 
 def test_the_argument_of_the_wrong_length_is_named():
     with pytest.raises(InvalidShape, match=r"velocity: found an array of shape \(1,\)"):
-        inverse_dynamics(Heli4(), 0.0, Heli4.home, [0.0], np.zeros(4))
+        inverse_dynamics(Heli4(), 0.0, Heli4().home, [0.0], np.zeros(4))

@@ -22,7 +22,7 @@ TIMES = np.linspace(0.0, 3.0, 151)
 
 def motion(t):
     angle = np.multiply.outer(t, PACE) + PHASE
-    pose = np.array(GoughStewart.home) + SWING * np.sin(angle)
+    pose = np.array(GoughStewart().home) + SWING * np.sin(angle)
     return pose, SWING * PACE * np.cos(angle), -SWING * PACE**2 * np.sin(angle)
 
 

@@ -30,28 +30,28 @@ def test_wrong_shapes_and_nan(kind):
             robot.forward(np.zeros(shape))
     with pytest.raises(InvalidShape):
         robot.assembly_modes(np.zeros((2, m)))
-    joints = robot.inverse(np.array([kind.home, kind.home]))
+    joints = robot.inverse(np.array([kind().home, kind().home]))
     assert robot.forward(joints).shape == (2, n)
     assert robot.forward(np.zeros((0, m))).shape == (0, n)
     joints[1, 1] = np.nan
     found = robot.forward(joints)
-    assert np.abs(found[0] - kind.home).max() < 1e-12
+    assert np.abs(found[0] - kind().home).max() < 1e-12
     assert np.isnan(found[1]).all()
     assert robot.assembly_modes(joints[1]).shape == (0, n)
-    pose = np.array(kind.home)
+    pose = np.array(kind().home)
     pose[1] = np.nan
     assert np.isnan(robot.inverse(pose)).all()
 
 
 @EACH
 def test_what_is_out_of_reach_is_nan_and_named(kind):
-    robot, pose = kind(), np.array(kind.home)
+    robot, pose = kind(), np.array(kind().home)
     if kind is Planar3RPR:
         return
     pose[0] = 5.0
     assert np.isnan(robot.inverse(pose)).all()
     with pytest.raises(UnreachablePose) as error:
-        robot.require_reachable(np.array([kind.home, pose]))
+        robot.require_reachable(np.array([kind().home, pose]))
     assert error.value.pose == tuple(pose)
     assert error.value.margin < -3.0
 
@@ -132,7 +132,7 @@ def test_equal_azimuths_of_one_half_are_refused_and_of_two_halves_are_not(kind):
     for azimuths in [(a,) * 4, (a, a + turn + ROUNDING, b, b + 1), (b, b + 1, a, a - turn)]:
         refused(kind, "azimuths", "are one", azimuths=azimuths)
     robot = kind(kind.Geometry(azimuths=(a, b, a, b)))
-    poses = np.array(kind.home) + [[0.03, 0.02, 0.01, t] for t in (0.5, -0.8)]
+    poses = np.array(kind().home) + [[0.03, 0.02, 0.01, t] for t in (0.5, -0.8)]
     assert (robot.margin("det_J_x", poses) > 1e-6).all()
 
 
@@ -146,12 +146,12 @@ def test_equal_azimuths_of_a_delta_are_refused():
 @pytest.mark.parametrize("value", [np.inf, -np.inf, 1e308, 1e200, 1e80])
 def test_infinite_and_overflowing_joints_are_nan_without_a_warning(kind, value):
     robot = kind()
-    joints = robot.inverse(np.array([kind.home] * 5))
+    joints = robot.inverse(np.array([kind().home] * 5))
     joints[range(3), range(3)] = value
     joints[3] = value
     found = robot.forward(joints)
     assert np.isnan(found[:4]).all()
-    assert np.abs(found[4] - kind.home).max() < 1e-12
+    assert np.abs(found[4] - kind().home).max() < 1e-12
     assert robot.assembly_modes(joints[0]).shape == (0, 3)
     assert np.isnan(robot.forward(joints[4], near=np.array([value, 0.0, 0.0]))).all()
     robot.inverse(np.array([value, 0.0, 0.0]))

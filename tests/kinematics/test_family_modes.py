@@ -248,12 +248,12 @@ def test_hexas_modes_close_and_hold_the_pose_and_what_newtons_method_finds():
 
 def test_hexa_says_where_newtons_method_did_not_converge():
     short = Hexa(Hexa.Geometry(rod_length=0.4))  # arms straight out, elbows farther from each other than rods reach
-    solution = short.solve_forward(np.full((2, 6), np.pi / 2))
+    solution = short.newton(np.full((2, 6), np.pi / 2))
     assert not solution.converged.any()
     assert np.isnan(solution.pose).all()
     assert (solution.residual > 0.01).all()
     robot = Hexa()
-    solution = robot.solve_forward(robot.inverse(robot.home))
+    solution = robot.newton(robot.inverse(robot.home))
     assert solution.converged
     assert solution.iterations <= 3
 
@@ -263,7 +263,7 @@ def test_hexa_of_any_size_finds_the_poses_near_its_home_from_its_own_start(scale
     g = Hexa().geometry
     sizes = {name: scale * np.array(getattr(g, name)) for name in SIZES}
     robot, units = Hexa(g.with_values(**sizes)), np.array([scale] * 3 + [1.0] * 3)
-    np.testing.assert_allclose(robot.initial_pose, Hexa.home * units, atol=1e-15 * scale)
+    np.testing.assert_allclose(robot.home, Hexa().home * units, atol=1e-15 * scale)
     around = np.random.default_rng(21).uniform(-1, 1, (2000, 6)) * [0.1, 0.1, 0.05, 0.4, 0.4, 0.4]
-    poses = (np.array(Hexa.home) + around) * units
+    poses = (np.array(Hexa().home) + around) * units
     assert np.abs((robot.forward(robot.inverse(poses)) - poses) / units).max() < 1e-9

@@ -91,7 +91,7 @@ def test_a_stretched_limb_is_at_the_end_of_its_reach_and_its_joint_is_singular()
 @pytest.mark.parametrize("kind", [Delta, Par4, Hexa], ids=lambda kind: kind.__name__)
 def test_arm_and_rod_in_line_are_the_end_of_reach(kind):
     robot = kind()
-    low, high = np.array(kind.home), np.array(kind.home)
+    low, high = np.array(kind().home), np.array(kind().home)
     high[2] = -2.0
     for _ in range(80):
         middle = (low + high) / 2

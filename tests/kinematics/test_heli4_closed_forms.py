@@ -59,11 +59,14 @@ def test_inverse_keeps_the_elbow_out(robot):
     assert (out_e * to_actuator[..., 2] - out_a * to_elbow[..., 2] > 0).all()
 
 
+def _cosines_and_sines(robot, model):
+    return [model.pose], list(robot.joint_cosines_and_sines(model.pose, model.g, model.mode))
+
+
 @BOTH
 def test_cosines_and_sines_are_the_joints_own(robot):
     poses = cylinder(10_000, seed=5, radius=0.35)
-    program = robot.program("cs", lambda m: ([m.pose], list(robot.joint_cosines_and_sines(m.pose, m.g))))
-    cosines, sines = evaluate(program, poses)
+    cosines, sines = evaluate(robot.program(_cosines_and_sines), poses)
     joints = robot.inverse(poses)
     assert np.abs(cosines - np.cos(joints)).max() < 1e-14
     assert np.abs(sines - np.sin(joints)).max() < 1e-14

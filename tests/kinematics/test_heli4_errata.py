@@ -199,7 +199,7 @@ def with_printed_sign(geometry, pose, j_r):
 
 def test_44_holds_with_a_minus():
     geometry = TABLE_1.with_values(azimuths=(0.0, np.pi / 2, np.pi, 3 * np.pi / 2))
-    graph = heli4_joint_graph(Heli4(geometry), Heli4.home)
+    graph = heli4_joint_graph(Heli4(geometry), Heli4().home)
     found = graph.mobility()
     assert found.kinematic - found.constraint == graph.count().mobility
     assert found.kinematic + found.constraint != graph.count().mobility
@@ -229,7 +229,7 @@ def test_49_and_53_have_the_sign_of_p_wrong(geometry):
 def test_54_has_the_sign_of_p_wrong():
     """It only shows where plates turn: on an internal singularity."""
     geometry = TABLE_1.with_values(azimuths=(0.0, np.pi / 2, np.pi, 3 * np.pi / 2))
-    robot, pose = Heli4(geometry), np.array(Heli4.home)
+    robot, pose = Heli4(geometry), np.array(Heli4().home)
     rates, v = graph_motions(geometry, pose)
     own = np.linalg.solve(robot.column_combinations, v.T).T  # (x', v_int)
     assert np.abs(own[:, 4:]).max() > 1e-3

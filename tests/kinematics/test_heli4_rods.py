@@ -122,4 +122,4 @@ def test_adjacent_limbs_on_one_plate_make_home_singular():
     robot = Heli4(Heli4.Geometry(azimuths=(0.0, np.pi / 2, np.pi, 3 * np.pi / 2)))
     assert abs(robot.internal_determinant(robot.home)) < 1e-15
     assert robot.margin("det_J_x", robot.home) < 1e-15
-    assert abs(Heli4().internal_determinant(Heli4.home)) > 0.9
+    assert abs(Heli4().internal_determinant(Heli4().home)) > 0.9

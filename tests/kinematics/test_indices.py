@@ -112,7 +112,7 @@ def test_no_force_on_a_parallel_singularity():
 
 
 def test_out_of_reach_is_nan():
-    poses = np.array([Heli4.home, [2.0, 0.0, -0.7, 0.0]])
+    poses = np.array([Heli4().home, [2.0, 0.0, -0.7, 0.0]])
     for values in (Heli4().fvi(poses), Heli4().condition_number(poses), *Heli4().isotropic(poses)):
         assert np.isnan(values).tolist() == [False, True]
 
@@ -120,9 +120,9 @@ def test_out_of_reach_is_nan():
 @pytest.mark.parametrize("length", [0.0, -0.1, np.nan, np.inf])
 def test_a_characteristic_length_is_a_length(length):
     with pytest.raises(InvalidValue, match="characteristic_length"):
-        Heli4().fvi(Heli4.home, characteristic_length=length)
+        Heli4().fvi(Heli4().home, characteristic_length=length)
 
 
 def test_an_unknown_margin_is_named_with_those_there_are():
     with pytest.raises(InvalidValue, match=f"speed.*{', '.join(Heli4.margins)}"):
-        Heli4().margin("speed", Heli4.home)
+        Heli4().margin("speed", Heli4().home)

@@ -180,3 +180,18 @@ def test_boxes_with_nan_or_crossed_bounds_are_refused() -> None:
     for low, high in ((bad, good), (good, bad), (2 * good, good), (good[:, :1], good[:, :1])):
         with pytest.raises(InvalidValue):
             enclose(program, low, high)
+
+
+@pytest.mark.parametrize("op", [Op.SIN, Op.COS], ids=lambda op: op.name)
+def test_a_small_box_a_hundred_million_turns_away_is_still_bounded_rightly(op: Op) -> None:
+    rng = np.random.default_rng(12)
+    for _ in range(400):
+        middle = float(rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(5.0, 8.99))
+        if rng.random() < 0.5:  # near an extreme or a root
+            middle = round(middle / (PI / 2)) * (PI / 2)
+        a, b = middle - float(rng.random()) * 0.1, middle + float(rng.random()) * 0.1
+        low, high = operate(op, (a, b), (0.0, 0.0))
+        assert high - low < 0.25 + 1e-5, "seed 12"
+        for x in (a, middle, b, a + 0.3 * (b - a)):
+            value = OPERATIONS[op](arb(x), arb(0.0))
+            assert arb(low) <= value <= arb(high), "seed 12"

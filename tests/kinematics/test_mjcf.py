@@ -111,7 +111,7 @@ def test_a_robot_let_go_keeps_its_energy(kind, uniform):
 def test_masses_are_ours_and_nothing_else(kind):
     robot = kind()
     model = loaded(robot, robot.home, PAYLOAD)[0]
-    symbols = kind.model()
+    symbols = robot.model()
     bodies = robot.bodies(symbols.pose, symbols.joints, symbols.g, PAYLOAD)
     assert model.body_mass.sum() == pytest.approx(sum(p.mass for p in bodies.all_particles()), abs=1e-11)
     assert sorted(model.actuator(k).name for k in range(model.nu)) == sorted(robot.actuator_names)
@@ -137,10 +137,10 @@ def test_friction_of_the_drives_is_mujocos(kind):
 
 def test_what_cannot_be_exported_is_named():
     with pytest.raises(InvalidValue, match="Delta; expected one of Heli4, Redundant3T1R, Peppermill, GoughStewart"):
-        mjcf(Delta(), Delta.home)
+        mjcf(Delta(), Delta().home)
     with pytest.raises(UnreachablePose, match="limb"):
         mjcf(Heli4(), (0.0, 0.0, -3.0, 0.0))
     with pytest.raises(InvalidValue, match="payload: found -1"):
-        mjcf(Heli4(), Heli4.home, -1.0)
+        mjcf(Heli4(), Heli4().home, -1.0)
     with pytest.raises(InvalidValue, match="one pose"):
-        mjcf(GoughStewart(), [GoughStewart.home] * 2)
+        mjcf(GoughStewart(), [GoughStewart().home] * 2)

@@ -13,13 +13,13 @@ X, Y, Z = np.eye(3)
 
 
 def test_the_papers_count():
-    count = heli4_joint_graph(Heli4(), Heli4.home).count()
+    count = heli4_joint_graph(Heli4(), Heli4().home).count()
     assert count == (16, 22, 7, 54, 42, 78, 90)
     assert count.mobility == count.force_equations - count.unknown_forces == 12
 
 
 def test_the_papers_joints():
-    graph = heli4_joint_graph(Heli4(), Heli4.home)
+    graph = heli4_joint_graph(Heli4(), Heli4().home)
     kinds = [joint.kind for joint in graph.joints]
     assert [kinds.count(k) for k in "RSH"] == [5, 16, 1]
     assert graph.constraints().shape == (78, 90)
@@ -57,7 +57,7 @@ def test_every_motion_turns_only_the_tool_and_obeys_the_inverse_jacobian(geometr
 
 def test_an_internal_singularity_makes_a_constraint_redundant():
     """Then m_K + m_S, as (44) prints, is 14; m_K - m_S is still the count's 12."""
-    graph = heli4_joint_graph(Heli4(SINGULAR), Heli4.home)
+    graph = heli4_joint_graph(Heli4(SINGULAR), Heli4().home)
     found = graph.mobility()
     assert (found.kinematic, found.constraint) == (13, 1)
     assert found.mobility == graph.count().mobility == 12
@@ -72,7 +72,7 @@ def test_away_from_it_the_same_geometry_is_regular():
 
 def test_with_drives_locked_the_parallel_singularity_shows_too():
     """Internal and parallel determinant both vanish here: two motions that the drives do not hold."""
-    locked = heli4_joint_graph(Heli4(SINGULAR), Heli4.home).with_drives_locked().mobility()
+    locked = heli4_joint_graph(Heli4(SINGULAR), Heli4().home).with_drives_locked().mobility()
     assert (locked.kinematic, locked.constraint) == (10, 2)
 
 

@@ -53,12 +53,12 @@ def test_by_any_parameter():
 
 def test_standing_still():
     zero = np.zeros(4)
-    still = joint_motion(Heli4(), np.array(Heli4.home), zero, zero, zero)
+    still = joint_motion(Heli4(), np.array(Heli4().home), zero, zero, zero)
     assert [np.abs(part).max() for part in still[1:]] == [0.0, 0.0, 0.0]
 
 
 def test_a_pose_that_one_limb_cannot_reach_is_nan_in_every_limb():
-    poses = np.array([Heli4.home, [0.9, 0.0, -0.7, 0.0]])
+    poses = np.array([Heli4().home, [0.9, 0.0, -0.7, 0.0]])
     zero = np.zeros(4)
     for part in joint_motion(Heli4(), poses, zero, zero, zero):
         assert np.isnan(part).tolist() == [[False] * 4, [True] * 4]
@@ -67,4 +67,4 @@ def test_a_pose_that_one_limb_cannot_reach_is_nan_in_every_limb():
 def test_the_derivative_of_the_wrong_length_is_named():
     zero = np.zeros(4)
     with pytest.raises(InvalidShape, match=r"second derivative: found an array of shape \(3,\)"):
-        joint_motion(Heli4(), np.array(Heli4.home), zero, np.zeros(3), zero)
+        joint_motion(Heli4(), np.array(Heli4().home), zero, np.zeros(3), zero)

@@ -8,6 +8,7 @@ from kinematics import InvalidValue, Peppermill, UnreachablePose
 from kinematics.peppermill_singularities import links, singularity_kinds
 from tests.kinematics.numeric import differences
 from tests.kinematics.peppermill_by_hand import TURN, ByHand, assembled, box, random_geometry
+from tests.sizes import few_or_many
 
 GEOMETRY = Peppermill.Geometry()
 UNLIKE = Peppermill.Geometry((0.22, 0.17), (0.48, 0.61), 0.55, (0.09, -0.13), 0.06)
@@ -41,9 +42,10 @@ def test_jacobians_of_every_layout_are_a_and_b_as_printed(elbows, sides):
         assert np.abs(found - wanted).max() < 1e-14
 
 
-def test_jacobians_of_a_thousand_random_geometries():
+@few_or_many(30, 1000)
+def test_jacobians_of_random_geometries(count):
     rng = np.random.default_rng(3)
-    for _ in range(1000):
+    for _ in range(count):
         geometry = random_geometry(rng)
         pose, joints = assembled(geometry, rng, 5)
         found, wanted = Peppermill(geometry).jacobians(pose), printed(geometry, pose, joints)

@@ -48,7 +48,7 @@ def test_travel_is_the_least_distance_of_a_joint_from_its_limits(kind: type[Mech
 @ALL
 def test_every_prototype_is_within_its_own_ranges_at_home(kind: type[Mechanism]) -> None:
     for margin in {"joint_travel", "passive_joint"} & set(kind.margins):
-        assert kind().margin(margin, np.array(kind.home)) > 0.05
+        assert kind().margin(margin, np.array(kind().home)) > 0.05
 
 
 def test_without_limits_the_room_is_infinite() -> None:
@@ -110,7 +110,7 @@ def test_a_hexapods_joints_keep_their_angles_in_any_frames() -> None:
 
 @pytest.mark.parametrize("kind", [Heli4, Redundant3T1R, Peppermill])
 def test_out_of_reach_there_is_no_room(kind: type[Mechanism]) -> None:
-    far = np.array(kind.home)
+    far = np.array(kind().home)
     far[1] += 5.0
     for margin in ("joint_travel", "passive_joint"):
         assert np.isnan(kind().margin(margin, far))
@@ -144,6 +144,10 @@ def test_another_mechanisms_ranges_are_refused() -> None:
         Heli4(ranges=GoughStewart.Ranges())
 
 
-def test_ranges_are_told_apart_by_their_digest() -> None:
-    assert Heli4.Ranges().digest == Heli4.Ranges().digest
-    assert Heli4.Ranges().digest != Heli4.Ranges(passive=(1.0, 0.9)).digest
+def test_robots_of_other_ranges_or_working_modes_are_told_apart_by_their_conditions() -> None:
+    same = Heli4(home=[0.0, 0.0, -0.71, 0.0])
+    assert Heli4().conditions_digest == same.conditions_digest
+    assert Heli4().conditions_digest != Heli4(ranges=Heli4.Ranges(passive=(1.0, 0.9))).conditions_digest
+    assert Heli4().conditions_digest != Heli4(home=[0.0, 0.0, 0.7, 0.0]).conditions_digest
+    legs = GoughStewart(home=[0.0, 0.0, 0.61, 0.0, 0.0, 0.0])
+    assert GoughStewart().conditions_digest != legs.conditions_digest  # whose joints rest at home

@@ -6,6 +6,7 @@ from scipy.optimize import least_squares
 
 from kinematics import InvalidGeometry, InvalidShape, Redundant3T1R, UnreachablePose
 from tests.kinematics.redundant_by_hand import ByHand, box, random_geometry, reachable
+from tests.sizes import few_or_many
 
 
 @pytest.fixture(scope="module")
@@ -40,9 +41,10 @@ def test_the_slides_are_before_the_platform_and_move_with_x(robot):
     assert np.abs(shifted - joints - 0.7).max() < 1e-15 * 8
 
 
-def test_round_trip_over_a_million_poses(robot):
-    poses = reachable(robot, box(1_010_000, seed=3))
-    assert len(poses) > 1_000_000
+@few_or_many(50_000, 1_010_000)
+def test_poses_of_the_workspace_come_back(robot, count):
+    poses = reachable(robot, box(count, seed=3))
+    assert len(poses) > 0.99 * count
     joints = robot.inverse(poses)
     found = robot.forward(joints)
     assert np.abs(found - poses).max() < 1e-12
@@ -66,9 +68,10 @@ def test_round_trip_on_the_planes_of_symmetry_and_at_home(robot):
     assert np.abs(robot.forward(robot.inverse(np.array(robot.home))) - robot.home).max() < 1e-15
 
 
-def test_round_trip_over_a_thousand_geometries():
+@few_or_many(30, 1000)
+def test_round_trips_of_random_geometries(count):
     rng, asked = np.random.default_rng(6), box(10, seed=7, y=0.3, z=0.3)
-    for _ in range(1000):
+    for _ in range(count):
         robot = Redundant3T1R(random_geometry(rng))
         poses = reachable(robot, asked)
         assert len(poses) > 0, robot
@@ -170,7 +173,7 @@ def test_joints_that_no_pose_has_give_nan(robot):
 def test_the_papers_model_never_looks_at_joint_6(robot):
     pose = np.array([0.1, 0.1, 0.2, 0.4])
     joints = robot.inverse(pose) + 0.05 * np.eye(6)[5]
-    assert np.abs(robot.forward(joints, tolerance=np.inf) - pose).max() < 1e-13
+    assert np.abs(robot.paper_forward(joints) - pose).max() < 1e-13
 
 
 def test_out_of_reach_gives_nan_rows_and_an_error_that_names_the_limb(robot):

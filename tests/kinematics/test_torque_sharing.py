@@ -65,7 +65,7 @@ def test_out_of_reach_is_nan_and_without_redundancy_nothing_changes():
     torque = inverse_dynamics(ROBOT, 1.0, pose, 0 * pose, 0 * pose, sharing="least_peak")
     assert np.isnan(torque).all(axis=-1).tolist() == [False, True]
     still = np.zeros(4)
-    args = (Heli4(), 1.0, Heli4.home, still, still)
+    args = (Heli4(), 1.0, Heli4().home, still, still)
     np.testing.assert_array_equal(inverse_dynamics(*args, sharing="least_peak"), inverse_dynamics(*args))
 
 

@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import warnings
 from contextlib import ExitStack, chdir, redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
@@ -79,9 +80,11 @@ ENVIRONMENT = {"COLUMNS": "200", "NO_COLOR": "1"}
 def linkwright(*arguments: object, cwd: Path | None = None) -> Ended:
     """The command in this process, which has the libraries loaded; a traceback would come through as its exception."""
     words, out, err = ["linkwright", *map(str, arguments)], io.StringIO(), io.StringIO()
-    interrupt = signal.getsignal(signal.SIGINT)
+    handlers = {kind: signal.getsignal(kind) for kind in (signal.SIGINT, signal.SIGTERM)}
     with ExitStack() as stack:
-        stack.callback(signal.signal, signal.SIGINT, interrupt)
+        for kind, handler in handlers.items():
+            stack.callback(signal.signal, kind, handler)
+        stack.enter_context(warnings.catch_warnings())
         stack.enter_context(patch.object(sys, "argv", words))
         stack.enter_context(patch.dict(os.environ, ENVIRONMENT))
         stack.enter_context(chdir(cwd or Path.cwd()))

@@ -146,8 +146,34 @@ def test_an_unusable_optimum_is_wrong_input_by_file_and_key(
 
 def test_an_optimum_of_another_question_is_refused(small_run: SmallRun, tmp_path: Path) -> None:
     copy_of(small_run[0], tmp_path)
-    (tmp_path / "study.toml").write_text(SMALL.replace("turn_deg = 90", "turn_deg = 80"))
+    (tmp_path / "study.toml").write_text(SMALL.replace("z = [-0.76, -0.7]", "z = [-0.76, -0.69]"))
     ended = linkwright("trajectory", tmp_path)
     assert ended.returncode == 2
-    assert "study_digest" in ended.stderr
-    assert linkwright("check", tmp_path).returncode == 1
+    assert "another question (region.z was [-0.76, -0.7] and is [-0.76, -0.69])" in ended.stderr
+    ended = linkwright("check", tmp_path)
+    assert ended.returncode == 1
+    assert re.search(r"FAIL +design question: region\.z +\[-0\.76, -0\.7\] +\[-0\.76, -0\.69\]", ended.stdout)
+
+
+def test_another_payload_leaves_the_geometry_its_claims_and_check_names_the_key(
+    small_run: SmallRun, tmp_path: Path
+) -> None:
+    copy_of(small_run[0], tmp_path)
+    (tmp_path / "study.toml").write_text(SMALL.replace("payload = 0.5", "payload = 0.25"))
+    assert linkwright("trajectory", tmp_path).returncode == 0
+    rows = check_study(tmp_path / "study.toml")
+    assert [(row.what, row.expected, row.found) for row in rows if not row.holds][:-1] == [
+        ("cycle question: trajectory.cycle.payload", "0.5", "0.25")
+    ]
+    holds = {row.what for row in rows if row.holds}
+    assert {"answers the study's design question", "figures.fvi", "internal_determinant >= 0.4 everywhere"} <= holds
+
+
+def test_masses_belong_to_the_cycle_and_a_title_to_neither_question(small_run: SmallRun, tmp_path: Path) -> None:
+    copy_of(small_run[0], tmp_path)
+    plain, other = "Two variables", "Another title"
+    (tmp_path / "study.toml").write_text(SMALL.replace(plain, other) + "[trajectory.drive]\nincrements = 4096\n")
+    assert all(row.holds for row in check_study(tmp_path / "study.toml"))
+    (tmp_path / "study.toml").write_text(SMALL + "[inertia]\narm_mass = 0.5\n")
+    failed = [row.what for row in check_study(tmp_path / "study.toml") if not row.holds]
+    assert failed == ["cycle question: inertia.arm_mass", "answers the study's cycle question"]

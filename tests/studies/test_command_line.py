@@ -55,6 +55,14 @@ def test_every_commands_help_has_examples_that_the_command_takes(command: str) -
         parser.make_context(command, example[2:])
 
 
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_shows_the_words_in_brackets_that_it_is_given(command: str) -> None:
+    shown = "".join(CliRunner().invoke(app, [command, "--help"]).output.replace("│", " ").split())
+    for option in COMMANDS[command].params:
+        words = (getattr(option, "help", None) or "").replace("\\[", "[")
+        assert "".join(words.split()) in shown
+
+
 def test_an_error_is_a_message_and_an_exit_status_and_no_traceback(tmp_path: Path) -> None:
     ended = linkwright_apart("trajectory", tmp_path)
     assert (ended.returncode, ended.stdout) == (2, "")

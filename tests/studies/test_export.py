@@ -44,7 +44,7 @@ def test_the_file_starts_at_the_studys_cycle_with_its_loops_closed(study: str, r
 
 def test_prototype_and_optimum_are_different_files(tmp_path: Path) -> None:
     texts = []
-    for more in ([], ["--prototype"]):
+    for more in ([], ["--prototype", "--force"]):
         assert linkwright("export", "heli4", "--out", tmp_path / "robot.xml", *more).returncode == 0
         texts.append((tmp_path / "robot.xml").read_text())
         assert ElementTree.fromstring(texts[-1]).tag == "mujoco"
@@ -68,6 +68,17 @@ def test_wrong_input_exits_2_and_leaves_nothing(words: list[str], message: str, 
     assert ended.returncode == 2
     assert message in ended.stderr
     assert [p.name for p in tmp_path.rglob("*")] == ["folder"]
+
+
+def test_a_file_that_is_there_stays_unless_it_is_forced_or_the_very_same(tmp_path: Path) -> None:
+    file = tmp_path / "robot.xml"
+    for _ in range(2):
+        assert linkwright("export", "heli4", "--prototype", "--out", file).returncode == 0
+    file.write_text("mine")
+    ended = linkwright("export", "heli4", "--prototype", "--out", file, "--json")
+    assert ended.returncode == 2
+    assert "--force" in json.loads(ended.stdout)["error"]
+    assert file.read_text() == "mine"
 
 
 def test_a_mechanism_without_a_model_is_named(

@@ -100,7 +100,7 @@ FAULTS = {
     ),
     "no blend": ("blend_mm = 24.9", "blend = 0", "trajectory.cycle.blend", "a length > 0"),
     "grid": ("grid = 2000", "grid = 999", "trajectory.grid", "found 999; expected a whole number from 1000"),
-    "period": ("period = 0.001", "period = 0", "trajectory.period", "found 0; expected a time > 0 (s)"),
+    "period": ("period = 0.001", "period = 0", "trajectory.period", "found 0; expected a time > 0, at most 1 (s)"),
     "law": ('"toppra"', '"topra"', "trajectory.law", "did you mean toppra?"),
     "file format": (
         "period = 0.001",

@@ -13,12 +13,14 @@ import pytest
 from kinematics import MECHANISMS, DriveTrain, GoughStewart, Heli4
 from kinematics.bodies import UNIFORM
 from studies.certify import question_of
+from studies.cycle_stage import time_cycle
 from studies.hardware import hardware_tables
 from studies.load import load_study
 from studies.locate import FOLDER
 from studies.optimum import committed, read_optimum
+from studies.output_folder import OutputFolder
 from studies.outputs import write_model, write_setpoints
-from studies.pipeline import time_cycle
+from studies.questions import design_question, digest_of
 from studies.schema import Study
 from studies.setup import robot_of
 from studies.units import Dimension, Key
@@ -92,7 +94,9 @@ def test_every_number_of_every_machine_has_a_key(kind: type) -> None:
 def test_a_committed_optimum_is_the_studys_machine(small_run: SmallRun, tmp_path: Path) -> None:
     file = copy_of(small_run[0], tmp_path)
     study = study_of(tmp_path, SMALL + HARDWARE)
-    file.write_text(re.sub(r'study_digest = "\w+"', f'study_digest = "{study.digest}"', file.read_text()))
+    optimum, question = read_optimum(file), design_question(study)  # the ranges belong to it
+    optimum.data["asked"]["design"], optimum.data["made_by"]["design_digest"] = question, digest_of(question)
+    file.write_text(optimum.text())
     robot = committed(study, tmp_path)
     assert robot is not None
     assert robot.geometry != robot_of(study).geometry
@@ -102,7 +106,7 @@ def test_a_committed_optimum_is_the_studys_machine(small_run: SmallRun, tmp_path
 def test_set_points_say_which_machine_they_are_for(tmp_path: Path) -> None:
     study = study_of(tmp_path, GIVEN + HARDWARE)
     assert study.trajectory is not None
-    assert write_setpoints(time_cycle(study, robot_of(study)), study.trajectory, tmp_path)
+    assert write_setpoints(time_cycle(study, robot_of(study)), study, OutputFolder(tmp_path))
     header = read_setpoints(tmp_path / "cycle.csv").header
     assert header["inertia"]["arm_mass"] == 1.1
     assert header["inertia"]["drive_train"]["coulomb"] == [1.0, 1.0, 2.0, 2.0]
@@ -172,7 +176,7 @@ def test_an_export_spreads_the_rods_as_the_study_does_unless_told_otherwise(tmp_
     for name, text in (("plain", GIVEN), ("uniform", GIVEN + "[inertia]\nrod_middle = 0.6666666666666666\n")):
         study = study_of(tmp_path, text)
         for rods in (None, 0.0, UNIFORM):
-            write_model(robot_of(study), study, rods, file)
+            write_model(robot_of(study), study, rods, file, force=True)
             texts[name, rods] = file.read_text()
     assert texts["plain", None] == texts["plain", 0.0] == texts["uniform", 0.0]
     assert texts["uniform", None] == texts["uniform", UNIFORM] == texts["plain", UNIFORM]

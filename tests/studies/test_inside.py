@@ -11,10 +11,10 @@ import pytest
 
 import trajectory.free_law
 from design import Box, Cylinder, Region
+from studies.cycle_stage import time_cycle
 from studies.errors import RequirementFailed
 from studies.inside import TOLERANCE, leaving
 from studies.load import load_study
-from studies.pipeline import time_cycle
 from studies.setup import limits_of, path_of, region_of, robot_of
 from tests.studies.command_line import SMALL
 from trajectory import AdeptCycle, PoseSpline, RoundedPath, free_motion
@@ -97,5 +97,6 @@ def test_the_free_law_is_given_the_region_and_a_motion_that_leaves_it_is_refused
         time_cycle(study, robot)
     assert caught.value.exit_status == 1
     failed = caught.value.failed[0]
-    assert failed.found == pytest.approx(float(region.room(np.array(failed.pose), NAMES)), abs=1e-12)
+    room = float(region.room(np.array(failed.pose), NAMES))
+    assert room - 1e-10 <= failed.found <= room  # a bound over a short interval about that pose
     assert set(given) == {PoseBounds(*zip(*(region.intervals[name] for name in NAMES), strict=True))}

@@ -39,6 +39,18 @@ def test_a_box_takes_pairs_and_numbers(write: Write, minimal_text: str) -> None:
     assert region.coordinates == {"x": 0, "y": (-0.25, 0.25), "z": (-0.2, 0.2), "theta": math.pi / 2}
 
 
+def test_what_rounding_leaves_of_a_zero_is_a_place_and_no_size(
+    write: Write, minimal_text: str, study_text: str
+) -> None:
+    home = "[home]\nx = 6.123e-17\ntheta = -1e-16\n"
+    study = load_study(write(minimal_text.replace("x = 0", "x = [-1.2e-17, 0.1]") + home))
+    assert study.home is not None
+    assert study.home.coordinates == {"x": 6.123e-17, "theta": -1e-16}
+    assert study.region.coordinates["x"] == (-1.2e-17, 0.1)
+    with pytest.raises(StudyError, match="0, or a number of a size from 1e-15 to"):
+        load_study(write(study_text.replace("radius = 0.5", "radius = 1e-16")))
+
+
 def test_what_is_left_out_takes_its_default(write: Write, minimal_text: str) -> None:
     study = load_study(write(minimal_text))
     assert (study.geometry, study.requirement) == ({}, ())

@@ -18,6 +18,7 @@ from studies.locate import study_path
 from studies.map_console import print_map
 from studies.map_options import InvalidOption, MapRequest, map_request
 from studies.map_stage import run_map
+from studies.output_folder import Written
 from tests.studies.command_line import linkwright
 
 CORNER = ("--over", "y_mm=200:300", "--over", "z=0.3:0.6")
@@ -78,6 +79,22 @@ def test_defaults_come_from_the_study() -> None:
     assert heli(section="z, theta").section.axes == ("z", "theta")
 
 
+def test_a_length_in_millimetres_is_the_very_number_in_metres() -> None:
+    for mm, m in (("41.3", 0.0413), ("24.9", 0.0249), ("305.7", 0.3057)):
+        assert redundant(at=(f"z_mm={mm}",), section="y,theta", over=("z=0:1",)).section.at["z"] == (m,)
+        assert redundant(over=(f"z_mm=0:{mm}",)).section.region.intervals["z"] == (0.0, m)
+
+
+def test_figures_that_still_move_are_printed_with_how_far(tmp_path: Path) -> None:
+    corner = ("--over", "y_mm=200:300", "--over", "z=0.3:0.6", "--at", "theta_deg=0")
+    done = linkwright("map", "redundant_3t1r", *corner, "--tolerance", 1e-12, "--seconds", 4, "--out", tmp_path)
+    assert done.returncode == 1, done.stderr
+    assert "not settled" in done.stdout
+    assert "still move by" in " ".join(done.stdout.split())
+    assert "area" in done.stdout
+    assert len(list(tmp_path.glob("map_*"))) == 3
+
+
 def test_other_bounds_and_units() -> None:
     region = redundant(over=("theta_deg=-45:45", "z_mm=0:500")).section.region
     assert isinstance(region, Box)
@@ -134,7 +151,7 @@ def test_what_cannot_be_proved_is_refused_before_anything_runs(asked: Any) -> No
 
 
 def test_where_no_node_keeps_the_bound_the_grid_s_step_is_said(capsys: pytest.CaptureFixture[str]) -> None:
-    print_map(run_map(redundant(at=("theta=0",), at_least=99.0), 1e-3, False, lambda _: None), [], False)
+    print_map(run_map(redundant(at=("theta=0",), at_least=99.0), 1e-3, False, lambda _: None), Written(), False)
     assert "no node keeps the bound; they are 0.0012 m and 0.0012 m apart" in " ".join(capsys.readouterr().out.split())
 
 

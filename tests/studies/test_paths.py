@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from studies.cycle_stage import time_cycle
 from studies.errors import StudyError
 from studies.load import load_study
-from studies.pipeline import time_cycle
 from studies.setup import path_of, robot_of
 from trajectory import AdeptCycle, RoundedPath, WaypointFileError
 
@@ -129,6 +129,16 @@ def test_a_study_s_waypoints_are_timed_with_a_stop_at_the_corner_without_a_blend
     assert timing.setpoints.header["path blends"] == [0.0]
 
 
+def test_a_way_that_ends_where_it_starts_is_a_closed_cycle_and_no_half(tmp_path: Path) -> None:
+    corners = ((-0.05, -0.8), (0.05, -0.8), (-0.05, -0.8))
+    rows = "".join(f"[[trajectory.path.waypoint]]\nx = {x}\ny = 0\nz = {z}\ntheta = 0\n" for x, z in corners)
+    study = load_study(written(tmp_path, f"[trajectory.path]\npayload = 1.0\n{rows}"))
+    timing = time_cycle(study, robot_of(study))
+    figures = timing.figures()
+    assert "half_cycle" not in figures
+    assert figures["closed_cycle"] == sum(piece.duration for piece in timing.cycle.pieces)
+
+
 @pytest.mark.parametrize(
     ("text", "kind", "key", "expected"),
     [
@@ -153,6 +163,12 @@ def test_a_study_s_waypoints_are_timed_with_a_stop_at_the_corner_without_a_blend
         ("", PLANAR, "trajectory.path", "file, waypoint, payload"),
         (CYCLE + 'size = "25/305/25"\n' + ROWS, HELI4, "trajectory.path", "no such table beside [trajectory.cycle]"),
         ("[trajectory.path]\npayload = 1.0\n", HELI4, "trajectory.path", "one of the two"),
+        (
+            "[[trajectory.path.waypoint]]".join(ROWS.split("[[trajectory.path.waypoint]]")[:2]),
+            HELI4,
+            "path.waypoint",
+            "two or more",
+        ),
         (ROWS.replace("payload", 'file = "a.csv"\npayload'), HELI4, "trajectory.path", "one of the two"),
         (ROWS.replace("blend_mm = 30", "blend_mm = 101"), HELI4, "path.waypoint", "0.1 m"),
         (ROWS.replace("blend_mm = 30", "blend_mm = -1"), HELI4, "path.waypoint.blend_mm", "a length >= 0"),
@@ -169,6 +185,15 @@ def test_a_fault_is_told_with_its_key(
     assert problems, str(caught.value)
     assert expected in problems[0].expected
     assert problems[0].line is not None
+
+
+def test_what_the_geometry_as_a_whole_refuses_is_told_at_its_key(tmp_path: Path) -> None:
+    region = "".join(f"{name} = 0\n" for name in ("x", "y", "z", "roll", "pitch", "yaw"))
+    frame = "[[2, 0, 0, 0], [0, 2, 0, 0], [0, 0, 2, 0], [0, 0, 0, 1]]"
+    text = f'title = "-"\nmechanism = "GoughStewart"\n[geometry]\nE = {frame}\n[region]\nkind = "box"\n{region}'
+    (tmp_path / "study.toml").write_text(text)
+    with pytest.raises(StudyError, match=r"study\.toml:4: geometry\.E: found .* expected a rotation and a translation"):
+        load_study(tmp_path / "study.toml")
 
 
 @pytest.mark.parametrize(("name", "found"), [("none.csv", "no such file"), ("study.toml", "no CSV file")])

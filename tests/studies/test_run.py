@@ -78,12 +78,12 @@ def test_a_failing_run_exits_1_and_leaves_what_was_there(tmp_path: Path) -> None
     (tmp_path / "study.toml").write_text(SMALL.replace("at_least = 0.4", "at_least = 0.999"))
     out = tmp_path / "out"
     out.mkdir()
-    (out / "optimum.toml").write_text("of an earlier day")
+    (out / "notes.txt").write_text("of an earlier day")
     ended = linkwright("run", tmp_path, "--out", out)
     assert ended.returncode == 1
     assert "internal_determinant >= 0.999 falls short" in ended.stderr
-    assert (out / "optimum.toml").read_text() == "of an earlier day"
-    assert [f.name for f in out.iterdir()] == ["optimum.toml"]
+    assert (out / "notes.txt").read_text() == "of an earlier day"
+    assert [f.name for f in out.iterdir()] == ["notes.txt"]
 
 
 def test_a_given_geometry_that_fails_its_requirement_writes_nothing(tmp_path: Path) -> None:

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from studies.cycle_stage import time_cycle
 from studies.load import load_study
-from studies.pipeline import time_cycle
 from studies.setup import path_of, robot_of
 from tests.bench.study_keys import BY, NAME, PAGE, tables
 

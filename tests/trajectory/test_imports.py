@@ -21,7 +21,7 @@ def importers(of: str) -> set[str]:
 
 def test_each_solver_is_imported_from_one_module() -> None:
     assert importers("toppra") == set()  # an oracle of the tests
-    assert importers("ruckig") == {"moves.py"}
+    assert importers("ruckig") == {"ruckig_plan.py"}
 
 
 def test_only_kinematics_is_imported_of_the_other_packages() -> None:

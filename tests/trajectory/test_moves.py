@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from ruckig import Result
 
-from kinematics import Heli4, InvalidValue, UnreachablePose
+from kinematics import Delta, Heli4, InvalidValue, Redundant3T1R, UnreachablePose
 from kinematics.motion import actuator_motion
 from trajectory import (
     AdeptCycle,
@@ -18,16 +18,17 @@ from trajectory import (
     Limits,
     LimitsExceeded,
     Move,
+    MoveRefused,
     TimingFailed,
     plan_move,
     plan_stop,
     read_setpoints,
 )
-from trajectory import moves as module
+from trajectory import ruckig_plan as module
 from trajectory import write_setpoints as write
 
 UNITS = ("rad",) * 4
-HOME = np.array(Heli4.home)
+HOME = np.array(Heli4().home)
 LIMITS = Limits(speed=20.0, acceleration=250.0, jerk=1e5, torque=127.0)
 
 
@@ -141,24 +142,52 @@ def test_anything_but_success_is_an_error(robot: Heli4, target: np.ndarray, monk
         plan_move(robot, HOME, target, LIMITS, 1.0, 1e-3, UNITS)
 
 
-@pytest.mark.parametrize(("spoiled", "what"), [(np.nan, "no pose"), (0.01, "another working mode")])
-def test_a_pose_that_does_not_exist_on_the_way_is_an_error(target: np.ndarray, spoiled: float, what: str) -> None:
-    class Broken(Heli4):
-        def forward(self, joints: np.ndarray) -> np.ndarray:
-            pose = super().forward(joints)
-            pose[len(pose) // 2] += spoiled
-            return pose
+def test_a_redundant_robot_moves_on_a_line_of_its_pose_with_all_joints_within_their_limits() -> None:
+    robot, limits = Redundant3T1R(), Limits(speed=1.0, acceleration=8.0, jerk=300.0)
+    start, end = np.array([0.1, -0.1, 0.05, -0.4]), np.array([0.3, 0.2, -0.1, 0.6])
+    points = plan_move(robot, start, end, limits, 1.0, 1e-3, robot.actuator_units).setpoints
+    assert points.pose[[0, -1]] == pytest.approx(np.stack([start, end]), abs=1e-12)
+    assert np.abs(robot.closure_residual(points.pose, points.joints)).max() < 1e-14
+    share = (points.pose - start) / (end - start)
+    assert np.ptp(share, axis=1).max() < 1e-9
+    slope = (points.joints[2:] - points.joints[:-2]) / 2e-3
+    assert np.abs(slope - points.speed[1:-1]).max() < 300.0 * 1e-6
+    for values, most in ((points.speed, 1.0), (points.acceleration, 8.0)):
+        assert np.abs(values).max() <= most * (1 + 1e-9)
+    assert max(np.abs(points.speed).max() / 1.0, np.abs(points.acceleration).max() / 8.0) > 0.8
 
-    with pytest.raises(TimingFailed, match=what):
-        plan_move(Broken(), HOME, target, LIMITS, 1.0, 1e-3, UNITS)
+
+def test_a_move_that_leaves_the_joints_ranges_is_refused_by_margin_time_and_pose() -> None:
+    start, end = np.array([0.0, 0.0, -0.7]), np.array([0.2, 0.0, -0.8])
+    low = float(Delta().inverse(end).min())
+    robot = Delta(ranges=Delta.Ranges(joints=(low + 0.05, 3.8)))
+    with pytest.raises(MoveRefused, match=r"joint_travel of -0\.05") as caught:
+        plan_move(robot, start, end, Limits(speed=5.0, acceleration=50.0, jerk=1e4), 0.5, 1e-3, ("rad",) * 3)
+    assert robot.margin("joint_travel", np.array(caught.value.pose)) < -0.05
+    assert caught.value.time > 0.0
 
 
-def test_a_redundant_robot_is_refused(target: np.ndarray) -> None:
-    class Redundant(Heli4):
-        joint_names = ("q1", "q2", "q3", "q4", "q5")
+def test_a_line_of_the_joints_that_leaves_a_range_gives_way_to_one_of_the_pose() -> None:
+    """Between these poses the joints' own line swings the rods further out than the straight line of the tool does."""
+    start, end = np.array([0.3, 0.33, -0.9]), np.array([0.25, 0.34, -0.61])
+    limits = Limits(speed=5.0, acceleration=50.0, jerk=1e4)
+    free = plan_move(Delta(), start, end, limits, 0.5, 1e-3, ("rad",) * 3).setpoints.pose
+    line = start + np.linspace(0.0, 1.0, 101)[:, None] * (end - start)
+    least = [
+        float(Delta(ranges=Delta.Ranges(passive=(1.5, 1.5))).margin("passive_joint", p).min()) for p in (free, line)
+    ]
+    assert least[0] < least[1]
+    most = 1.5 - (least[0] + least[1]) / 2
+    held = Delta(ranges=Delta.Ranges(passive=(most, most)))
+    points = plan_move(held, start, end, limits, 0.5, 1e-3, ("rad",) * 3).setpoints
+    assert np.ptp((points.pose - start) / (end - start), axis=1).max() < 1e-9
+    assert held.margin("passive_joint", points.pose).min() >= 0.0
 
-    with pytest.raises(InvalidValue, match="joints of Redundant"):
-        plan_move(Redundant(), HOME, target, LIMITS, 1.0, 1e-3, UNITS)
+
+def test_a_move_too_slow_to_plan_says_how_long_it_would_take() -> None:
+    limits = Limits(speed=1e-5, acceleration=30.0, jerk=500.0)
+    with pytest.raises(TimingFailed, match=r"takes at least 2\.\d+e\+04 s at its speed limit"):
+        plan_move(Delta(), np.array([0.0, 0.0, -0.75]), np.array([0.1, 0.0, -0.8]), limits, 0.5, 1e-3, ("rad",) * 3)
 
 
 # Stops
@@ -215,14 +244,14 @@ def test_a_stop_from_a_state_beyond_the_limits_is_refused(robot: Heli4) -> None:
 
 def test_a_stop_whose_rest_is_out_of_reach_is_refused(robot: Heli4) -> None:
     state = (robot.inverse(np.array([0.0, 0.0, -1.09, 0.0])), np.full(4, 15.0), np.zeros(4))
-    with pytest.raises(TimingFailed, match=r"no pose|another working mode"):
+    with pytest.raises(MoveRefused, match=r"no pose|another working mode"):
         plan_stop(robot, state, replace(LIMITS, torque=None), 1.0, 1e-3, UNITS)
 
 
 @pytest.mark.parametrize(
     ("more", "error", "says"),
     [
-        ({"position": (-0.01, 0.01)}, LimitsExceeded, "position"),
+        ({"position": (-0.01, 0.01)}, MoveRefused, "not within -0.01 to 0.01"),
         ({"stall_torque": 5.0, "no_load_speed": 1.0}, LimitsExceeded, "torque at speed"),
         ({"rms_torque": 0.01}, InvalidValue, "rms_torque"),
     ],

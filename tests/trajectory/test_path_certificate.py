@@ -30,8 +30,8 @@ CASES: list[tuple[Mechanism, Path]] = [
     (Redundant3T1R(), AdeptCycle(pick=(0.0, -0.1525, 0.0), heading=math.pi / 2, turn=math.pi / 2)),
     (Peppermill(), AdeptCycle(pick=(-0.1525, 0.0, -0.0125))),
     (GoughStewart(), TILTED),
-    (Hexa(), AdeptCycle(span=0.1, pick=(-0.05, 0.0, Hexa.home[2]), turn=0.2, tilt=(0.1, 0.0), pose_names=SIX)),
-    (Delta(), AdeptCycle(pick=(-0.1525, 0.0, Delta.home[2]), turn=0.0, pose_names=("x", "y", "z"))),
+    (Hexa(), AdeptCycle(span=0.1, pick=(-0.05, 0.0, Hexa().home[2]), turn=0.2, tilt=(0.1, 0.0), pose_names=SIX)),
+    (Delta(), AdeptCycle(pick=(-0.1525, 0.0, Delta().home[2]), turn=0.0, pose_names=("x", "y", "z"))),
     (Planar3RRR(), TRIANGLE),
 ]
 

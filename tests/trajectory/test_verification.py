@@ -9,13 +9,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kinematics import Heli4, InvalidValue
+from kinematics import Heli4, InvalidValue, Planar3RPR
 from kinematics.dynamics import GRAVITY
 from trajectory import (
     AdeptCycle,
     Limits,
     LimitsExceeded,
     Path,
+    PoseSpline,
     Repaired,
     Reversed,
     TimedPath,
@@ -247,14 +248,21 @@ def test_a_smooth_law_has_its_jerk_measured(robot: Heli4, smooth: TimedPath) -> 
     assert found.notes == ()
 
 
-def test_the_wrong_working_mode_fails(limits: Limits, repaired: Repaired) -> None:
-    class OtherElbow(Heli4):
-        """Joints that close the loop for a mirrored pose only."""
-
-        def forward(self, joints: np.ndarray) -> np.ndarray:
-            return super().forward(joints) * [-1.0, 1.0, 1.0, 1.0]
-
-    assert "forward" in verify(OtherElbow(), repaired.motion, limits, 1.0).failures
+@pytest.mark.parametrize(("turn", "changes"), [(-1.2, False), (-2.0, True)])
+def test_a_motion_through_a_singularity_changes_its_assembly_mode(turn: float, changes: bool) -> None:
+    """The legs of the default 3-RPR meet in a point at theta = -90 degrees."""
+    jerk = 32.0 * turn * np.array([1.0, -1.0, -1.0, 1.0])[:, None] * [0.0, 0.0, 1.0]
+    rows = [np.zeros((3, 3))]
+    for k in range(3):
+        p, v, a = rows[-1]
+        j, h = jerk[k], 0.25
+        rows.append(np.stack([p + h * (v + h * (a / 2 + h * j / 6)), v + h * (a + h * j / 2), a + h * j]))
+    starts = np.stack(rows)
+    ends = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, turn]])
+    motion = PoseSpline("by hand", np.linspace(0.0, 1.0, 5), starts[:, 0], starts[:, 1], starts[:, 2], jerk, ends)
+    found = verify(Planar3RPR(), motion, Limits(speed=100.0), 0.0)
+    assert ("change of assembly mode" in found.failures) == changes
+    assert found.residuals["end pose"] < 1e-12
 
 
 def test_a_peak_says_where_and_when(repaired: Repaired) -> None:
