@@ -72,7 +72,7 @@ def progress_at(share: Array) -> Array:
     low, high = np.zeros_like(share), np.ones_like(share)
     for _ in range(60):
         middle = (low + high) / 2
-        below = smoothstep(middle)[0] < share
+        below = middle**3 * (10.0 + middle * (6.0 * middle - 15.0)) < share
         low, high = np.where(below, middle, low), np.where(below, high, middle)
     return (low + high) / 2
 
