@@ -154,16 +154,17 @@ class TimedPath:
         knots, length = np.array(self.path.knots), self.path.length
         if knots.size < 3:
             return 0.0
-        _, *before = self.path.evaluate(np.nextafter(knots[1:-1], 0.0), 3)
-        _, *after = self.path.evaluate(knots[1:-1], 3)
-        fourth = self.path.steepest((knots[1:] + knots[:-1]) / 2, 4)
-        steeper = [*(np.abs(a) for a in after[1:]), np.maximum(fourth[:-1], fourth[1:])]
-        unit = np.where(np.arange(fourth.shape[1]) < places(self.path.pose_names), 1.0, length)
-        found = 0.0
-        for k, (b, a, slope) in enumerate(zip(before, after, steeper, strict=True)):
-            rounding = _ULPS * np.finfo(float).eps * (length * slope + np.abs(a))
-            found = max(found, float((np.maximum(np.abs(b - a) - rounding, 0.0) * length**k * unit).max()))
-        return found
+        _, *at_start = self.path.evaluate(knots[:-1], 3)
+        _, *at_end = self.path.evaluate(np.nextafter(knots[1:], 0.0), 3)
+        unit = np.where(np.arange(len(self.path.pose_names)) < places(self.path.pose_names), 1.0, length)
+        steepest, worst = self.path.steepest((knots[1:] + knots[:-1]) / 2, 4), 0.0
+        for order in (3, 2, 1):  # each changes within the rounding of s by the most of the next, piece by piece
+            start, end = at_start[order - 1], at_end[order - 1]
+            rounding = length * np.maximum(steepest[:-1], steepest[1:]) + np.abs(start[1:])
+            jump = np.abs(start[1:] - end[:-1]) - _ULPS * np.finfo(float).eps * rounding
+            worst = max(worst, float((jump * unit).max()) * length ** (order - 1))
+            steepest = np.maximum(np.abs(start), np.abs(end)) + steepest * np.diff(knots)[:, None]
+        return worst
 
     def _fourth_slack(self, fourth: Array, low: Array, high: Array, away: Array) -> Array:
         """How far the fourth derivative by s may be, between two arc lengths (k,), from what it is in the middle.
