@@ -1,34 +1,51 @@
-"""Regions, requirements and the synthesis of geometries that meet them."""
+"""Regions, requirements, the synthesis of geometries that meet them, maps, and proofs."""
 
-from design.best_bound import BestBound, best_bound
-from design.certificate import Certificate, certify
-from design.certificate_file import certificate_bytes, load_certificate, save_certificate
-from design.certified import CertifiedRegion, certified_cylinder
-from design.certified_cells import certified_cells
+from __future__ import annotations
+
+from design.budget import Budget
+from design.certificates import (
+    BestBound,
+    Certificate,
+    CertifiedRegion,
+    best_bound,
+    certificate_bytes,
+    certified_cylinder,
+    certify,
+    load_certificate,
+    replay,
+    save_certificate,
+)
 from design.errors import (
     BrokenCertificate,
     InvalidRegion,
     InvalidSection,
     OtherCertificate,
     OutOfTime,
-    SynthesisFailed,
     UnreadableCertificate,
 )
-from design.index import Index, index_names, index_of
-from design.level_sets import LevelSet, level_set
-from design.maps import Map, map_of
+from design.maps import (
+    Index,
+    LevelSet,
+    Map,
+    Section,
+    boundary,
+    certified_cells,
+    index_names,
+    index_of,
+    level_set,
+    map_of,
+)
 from design.region import Box, Cylinder, Region
-from design.replay import replay
 from design.requirement import Bounds, Requirement, SumLimit
-from design.search import WorstPoses, worst_poses
-from design.section import Section
-from design.sweep import Sweep, sweep
+from design.sampling import Sweep, WorstPoses, sweep, worst_poses
+from design.synthesis import Problem, Synthesis, SynthesisFailed, active_sets, synthesise, worst_of
 
 __all__ = [
     "BestBound",
     "Bounds",
     "Box",
     "BrokenCertificate",
+    "Budget",
     "Certificate",
     "CertifiedRegion",
     "Cylinder",
@@ -39,15 +56,19 @@ __all__ = [
     "Map",
     "OtherCertificate",
     "OutOfTime",
+    "Problem",
     "Region",
     "Requirement",
     "Section",
     "SumLimit",
     "Sweep",
+    "Synthesis",
     "SynthesisFailed",
     "UnreadableCertificate",
     "WorstPoses",
+    "active_sets",
     "best_bound",
+    "boundary",
     "certificate_bytes",
     "certified_cells",
     "certified_cylinder",
@@ -60,5 +81,7 @@ __all__ = [
     "replay",
     "save_certificate",
     "sweep",
+    "synthesise",
+    "worst_of",
     "worst_poses",
 ]

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from numbers import Real
 from typing import TypeVar
 
-from kinematics.errors import InvalidValue
+from kinematics import InvalidValue
 
 Item = TypeVar("Item")
 

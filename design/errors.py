@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from kinematics.errors import LinkwrightError, plain
-
-if TYPE_CHECKING:
-    from design.exchange import Candidate
+from kinematics import LinkwrightError, plain
 
 
 class InvalidRegion(LinkwrightError):
@@ -35,17 +31,6 @@ class OutOfTime(LinkwrightError):
     def __init__(self, what: str, seconds: float, reached: str) -> None:
         self.what, self.seconds, self.reached = what, seconds, reached
         super().__init__(f"{what}: {seconds:g} s were used up at {reached}; expected more time, or a coarser question")
-
-
-class SynthesisFailed(LinkwrightError):
-    """The optimisation has no answer to stand by; `best` is the best geometry that was seen all the same, or None."""
-
-    exit_status = 1
-
-    def __init__(self, reason: str, status: str, best: Candidate | None = None) -> None:
-        self.reason, self.status, self.best = reason, status, best
-        seen = f"; best found: {best}" if best is not None else ""
-        super().__init__(f"no optimum: {reason} (solver status: {status}){seen}")
 
 
 class OtherCertificate(LinkwrightError):

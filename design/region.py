@@ -15,8 +15,8 @@ from numbers import Real
 import numpy as np
 
 from design.errors import InvalidRegion
+from kinematics import Array
 
-Array = np.ndarray
 Interval = float | tuple[float, float]
 _ROUNDING = 1e-12  # relative to the largest number between the bounds
 _LARGEST = 1e100  # of a bound: squares of it must stay numbers

@@ -1,39 +1,61 @@
 """Mechanisms as loop closures, and all that follows from them."""
 
-from kinematics.architectures import ARCHITECTURES, Architecture, loop_mobility, mobility_of_identical_chains
-from kinematics.bodies import InertiaRecord
-from kinematics.delta import Delta
-from kinematics.drive_train import DriveTrain
-from kinematics.dynamics import inverse_dynamics
-from kinematics.errors import InvalidGeometry, InvalidShape, InvalidValue, LinkwrightError, UnreachablePose
-from kinematics.gough_stewart import GoughStewart
-from kinematics.gough_stewart_geometry import SingularArchitecture
-from kinematics.gough_stewart_modes import LostPaths
-from kinematics.gough_stewart_self_motion import SelfMotion
-from kinematics.heli4 import Heli4
-from kinematics.hexa import Hexa
-from kinematics.indices import FviBounds
-from kinematics.mechanism import Mechanism
-from kinematics.mobility import JointGraph
-from kinematics.motion import actuator_motion, joint_motion
-from kinematics.par4 import Par4
-from kinematics.peppermill import Peppermill
-from kinematics.planar_3prr import Planar3PRR
-from kinematics.planar_3rpr import Planar3RPR
-from kinematics.planar_3rrr import Planar3RRR
-from kinematics.redundant_3t1r import Redundant3T1R
+from __future__ import annotations
 
-_MAIN = (Heli4, Redundant3T1R, Peppermill, GoughStewart)
-_FAMILY = (Planar3RPR, Planar3PRR, Planar3RRR, Delta, Hexa, Par4)
-MECHANISMS: dict[str, type[Mechanism]] = {cls.__name__: cls for cls in (*_MAIN, *_FAMILY)}
+from kinematics.arguments import finite, positive, whole
+from kinematics.arrays import Array, checked
+from kinematics.dynamics import (
+    JointMotion,
+    actuator_motion,
+    derivatives_along,
+    friction,
+    from_actuators,
+    inverse_dynamics,
+    joint_motion,
+    to_actuators,
+    torques,
+)
+from kinematics.errors import InvalidGeometry, InvalidShape, InvalidValue, LinkwrightError, UnreachablePose, plain
+from kinematics.evaluation import (
+    CORES,
+    BlockProgram,
+    BoxProgram,
+    Op,
+    Program,
+    bulk,
+    enclose,
+    evaluate,
+    over_spans,
+    replay,
+)
+from kinematics.machine import UNIFORM, DriveTrain, GeometryRecord, InertiaRecord, JointRanges
+from kinematics.mathematics import adjugate, determinant, segment_gap_symbolic, volume
+from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
+from kinematics.model import FviBounds, Mechanism, Model, homogeneous, sides
+from kinematics.multibody import mjcf
+from kinematics.printed_bounds import rounded_down, rounded_up
+from kinematics.robots import MECHANISMS, Delta, Hexa
+from kinematics.robots.gough_stewart import GoughStewart, LostPaths, SelfMotion, SingularArchitecture
+from kinematics.robots.heli4 import Heli4
+from kinematics.robots.par4 import Par4
+from kinematics.robots.peppermill import Peppermill
+from kinematics.robots.planar import Planar3PRR, Planar3RPR, Planar3RRR
+from kinematics.robots.redundant_3t1r import Redundant3T1R
+from kinematics.robots.shared import RodLevel
 
 __all__ = [
     "ARCHITECTURES",
+    "CORES",
     "MECHANISMS",
+    "UNIFORM",
     "Architecture",
+    "Array",
+    "BlockProgram",
+    "BoxProgram",
     "Delta",
     "DriveTrain",
     "FviBounds",
+    "GeometryRecord",
     "GoughStewart",
     "Heli4",
     "Hexa",
@@ -42,21 +64,51 @@ __all__ = [
     "InvalidShape",
     "InvalidValue",
     "JointGraph",
+    "JointMotion",
+    "JointRanges",
     "LinkwrightError",
     "LostPaths",
     "Mechanism",
+    "Model",
+    "Op",
     "Par4",
     "Peppermill",
     "Planar3PRR",
     "Planar3RPR",
     "Planar3RRR",
+    "Program",
     "Redundant3T1R",
+    "RodLevel",
     "SelfMotion",
     "SingularArchitecture",
     "UnreachablePose",
     "actuator_motion",
+    "adjugate",
+    "bulk",
+    "checked",
+    "derivatives_along",
+    "determinant",
+    "enclose",
+    "evaluate",
+    "finite",
+    "friction",
+    "from_actuators",
+    "homogeneous",
     "inverse_dynamics",
     "joint_motion",
     "loop_mobility",
+    "mjcf",
     "mobility_of_identical_chains",
+    "over_spans",
+    "plain",
+    "positive",
+    "replay",
+    "rounded_down",
+    "rounded_up",
+    "segment_gap_symbolic",
+    "sides",
+    "to_actuators",
+    "torques",
+    "volume",
+    "whole",
 ]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from kinematics.errors import LinkwrightError
+from kinematics import LinkwrightError
 
 KeyPath = tuple[str | int, ...]  # ("requirement", 0, "margin"): table, row, key
 

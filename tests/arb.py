@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from flint import arb, ctx
 
-from kinematics.program import Op
+from kinematics.evaluation.program import Op
 
 ctx.prec = 128
 

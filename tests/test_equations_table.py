@@ -56,7 +56,8 @@ def known_tests() -> dict[str, list[str]]:
 def names() -> dict[str, object]:
     """Every module of kinematics and every public name in one."""
     modules = {
-        m.name: importlib.import_module(f"kinematics.{m.name}") for m in pkgutil.iter_modules(kinematics.__path__)
+        m.name.rpartition(".")[2]: importlib.import_module(m.name)
+        for m in pkgutil.walk_packages(kinematics.__path__, "kinematics.")
     }
     own = {n: v for m in modules.values() for n, v in vars(m).items() if not n.startswith("_")}
     return {**own, **modules}

@@ -6,10 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kinematics import Mechanism
-from kinematics.definition import Definition
-from kinematics.dynamics import inverse_dynamics
-from kinematics.rods import RodLevel
+from kinematics import Mechanism, inverse_dynamics
+from kinematics.model.definition import Definition
+from kinematics.robots.shared.paired_rods import RodLevel
 
 PAGE = (Path(__file__).parents[1] / "docs" / "new_mechanism.md").read_text()
 

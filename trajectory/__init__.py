@@ -8,9 +8,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from trajectory.adept import STANDARD_SIZES, AdeptCycle
-from trajectory.cycle import Cycle, Piece, there_and_back
-from trajectory.emergency_stop import EmergencyStop, emergency_stop
+from trajectory.cycles import Cycle, Piece, Repaired, Timing, repair, there_and_back
 from trajectory.errors import (
     InvalidPath,
     LimitsExceeded,
@@ -23,35 +21,49 @@ from trajectory.errors import (
     WaypointFileError,
 )
 from trajectory.files import CannotWrite, require_writable, write_files
+from trajectory.laws.bounds import lower_bound
 from trajectory.limits import Limits
-from trajectory.lower_bound import lower_bound
-from trajectory.motion import Motion, PoseMotion, motion_of, pose_motion
-from trajectory.path import Part, Path, Reversed, pieces
-from trajectory.path_certificate import PathCertificate, certify_path
-from trajectory.pose_spline import PoseSpline
-from trajectory.repair import Repaired, repair
-from trajectory.rounded import RoundedPath
-from trajectory.setpoint_file import read_setpoints, write_setpoints
-from trajectory.setpoints import Setpoints, cycle_setpoints
-from trajectory.smoothness import require_smooth
-from trajectory.timed import TimedMotion, TimedPath
-from trajectory.timing import PathMotion, TimeLaw
-from trajectory.verification import Peak, Verification, verify
-from trajectory.waypoint_file import read_waypoints
+from trajectory.motions import (
+    Motion,
+    PathMotion,
+    PoseMotion,
+    PoseSpline,
+    TimedMotion,
+    TimedPath,
+    TimeLaw,
+    motion_of,
+    pose_motion,
+)
+from trajectory.paths import (
+    STANDARD_SIZES,
+    AdeptCycle,
+    Part,
+    Path,
+    PoseBounds,
+    Reversed,
+    RoundedPath,
+    pieces,
+    read_waypoints,
+    require_smooth,
+)
+from trajectory.setpoints import Setpoints, cycle_setpoints, read_setpoints, write_setpoints
+from trajectory.stops import EmergencyStop, emergency_stop
+from trajectory.units import in_si
+from trajectory.verification import PathCertificate, Peak, Verification, Way, certify_path, verify
 
 if TYPE_CHECKING:
-    from trajectory.free_law import free_motion
-    from trajectory.jerk import jerk_limited
+    from trajectory.laws.free import free_motion
+    from trajectory.laws.jerk import jerk_limited
+    from trajectory.laws.toppra import time_optimal
     from trajectory.moves import Move, plan_move, plan_stop
-    from trajectory.toppra_law import time_optimal
 
 _LAZY = {
+    "free_motion": "trajectory.laws.free",
+    "jerk_limited": "trajectory.laws.jerk",
+    "time_optimal": "trajectory.laws.toppra",
     "Move": "trajectory.moves",
-    "free_motion": "trajectory.free_law",
-    "jerk_limited": "trajectory.jerk",
     "plan_move": "trajectory.moves",
     "plan_stop": "trajectory.moves",
-    "time_optimal": "trajectory.toppra_law",
 }
 
 
@@ -81,6 +93,7 @@ __all__ = [
     "PathRefused",
     "Peak",
     "Piece",
+    "PoseBounds",
     "PoseMotion",
     "PoseSpline",
     "Repaired",
@@ -92,13 +105,16 @@ __all__ = [
     "TimeLaw",
     "TimedMotion",
     "TimedPath",
+    "Timing",
     "TimingFailed",
     "Verification",
+    "Way",
     "WaypointFileError",
     "certify_path",
     "cycle_setpoints",
     "emergency_stop",
     "free_motion",
+    "in_si",
     "jerk_limited",
     "lower_bound",
     "motion_of",

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path as FilePath
 
-from kinematics.errors import InvalidValue, LinkwrightError
+from kinematics import InvalidValue, LinkwrightError
 
 
 def _place(at: float, pose: Sequence[float] | None, waypoint: int | None) -> str:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from kinematics.errors import LinkwrightError
+from kinematics import LinkwrightError
 
 
 class CannotWrite(LinkwrightError):

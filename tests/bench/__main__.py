@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from kinematics.shown import rounded_down
+from kinematics.printed_bounds import rounded_down
 from tests.bench import certificates, trajectory_peers
 from tests.bench.page import ROOT, write_between
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from kinematics.dynamics import inverse_dynamics
-from tests.kinematics.mujoco_model import MAIN, OpenTree, cycle, loaded, with_uniform_rods
+from kinematics import inverse_dynamics
+from tests.kinematics.multibody.mujoco_model import MAIN, OpenTree, cycle, loaded, with_uniform_rods
 
 PAGE = Path(__file__).parents[2] / "docs" / "dynamics.md"
 START, END = "<!-- written by `python -m tests.bench.dynamics` -->", "<!-- /dynamics -->"

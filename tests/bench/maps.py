@@ -11,13 +11,22 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from design import Box, Section, certified_cells, certified_cylinder, index_of, level_set, map_of
-from design.certified import CertifiedRegion
-from design.level_sets import LevelSet, boundary
-from design.region import Cylinder
+from design import (
+    Box,
+    CertifiedRegion,
+    Cylinder,
+    LevelSet,
+    Section,
+    certified_cells,
+    certified_cylinder,
+    index_of,
+    level_set,
+    map_of,
+)
+from design.maps.level_sets import boundary
 from kinematics import Heli4, Redundant3T1R
-from studies.map_picture import draw_boundary, draw_cells, draw_contours, label_axes
-from studies.plots import STYLE, png
+from studies.report.map_plot import draw_boundary, draw_cells, draw_contours, label_axes
+from studies.report.plots import STYLE, png
 from tests.bench.table_1 import HIGHEST, NINE, PRINTED, RULES, STEPS, conventions, limit_of_y
 
 DOCS = Path(__file__).parents[2] / "docs"

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinematics import Heli4, Redundant3T1R
+from kinematics import Array, Heli4, Redundant3T1R
 
-Array = np.ndarray
 UPPER = np.array([0.0, 0.0, 1.0, 1.0])
 
 

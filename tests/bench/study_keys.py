@@ -9,9 +9,9 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from kinematics import MECHANISMS
-from studies.against_mechanism import study_table
-from studies.schema import Study
-from studies.units import Key, Table
+from studies.building.against_mechanism import study_table
+from studies.study_file.study import Study
+from studies.study_file.units import Key, Table
 from tests.bench.page import ROOT, write_between
 
 PAGE = ROOT / "docs" / "study_file.md"

@@ -12,9 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinematics import Redundant3T1R
+from kinematics import Array, Redundant3T1R
 
-Array = np.ndarray
 NINE = tuple(np.deg2rad([-90.0, -60.0, -45.0, -30.0, 0.0, 30.0, 45.0, 60.0, 90.0]).tolist())
 CASES = {"theta = 0": (0.0,), "nine angles": NINE}
 PRINTED = {"theta = 0": (0.79, 1.21, 0.08), "nine angles": (0.69, 1.14, 0.07)}

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from design import Bounds, Cylinder, Requirement, SumLimit
-from design.nlp import Problem, solve
-from design.synthesis import synthesise
+from design.synthesis.nlp import Problem, solve
+from design.synthesis.synthesis import synthesise
 from kinematics import Heli4
 from tests.bench import peers
 from trajectory import AdeptCycle, Limits, jerk_limited, repair, time_optimal

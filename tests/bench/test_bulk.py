@@ -10,12 +10,11 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from kinematics import Mechanism, Redundant3T1R
-from kinematics.indices import fvi, homogeneous
+from kinematics import Array, Mechanism, Redundant3T1R
+from kinematics.model.indices import fvi, homogeneous
 from tests.bench import peers
 from tests.bench.certificates import CASES
 
-Array = np.ndarray
 COUNT = 200_000
 # One region a mechanism: those whose FVI or determinant is certified.
 REGIONS = {type(robot).__name__: (robot, region) for robot, region, *_ in CASES}

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from design import Bounds, Box, Requirement, Section, SumLimit, certify, index_of, level_set, worst_poses
-from design.nlp import Problem
-from design.synthesis import synthesise
+from design.synthesis.nlp import Problem
+from design.synthesis.synthesis import synthesise
 from kinematics import MECHANISMS, Delta, FviBounds, Mechanism
 from tests.design.scaled import around_home, scale_of, scaled, scaled_bounds, scaled_box
 

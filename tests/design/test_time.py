@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from design import Box, Cylinder, best_bound, certified_cells, certified_cylinder, certify, replay, worst_poses
-from kinematics import Heli4, Redundant3T1R
-from kinematics.errors import InvalidValue
+from kinematics import Heli4, InvalidValue, Redundant3T1R
 
 ROBOT = Heli4()
 REGION = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-math.pi, math.pi))

@@ -16,7 +16,7 @@ from unittest.mock import patch
 
 import pytest
 
-from studies.cli import main
+from studies.cli.app import main
 
 SMALL = """\
 title = "Two variables"

@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import pytest
 
 import kinematics
-from kinematics.bodies import InertiaRecord
-from kinematics.ranges import RodRanges
+from kinematics import InertiaRecord
+from kinematics.machine.joint_ranges import RodRanges
 from tests.studies.command_line import SMALL, SmallRun, linkwright_apart
 
 STUDY = """\

@@ -11,10 +11,9 @@ import json
 
 import numpy as np
 
-from kinematics import InvalidValue
+from kinematics import Array, InvalidValue
 from trajectory.drive_files.drive import Drive
 from trajectory.drive_files.text import header_lines
-from trajectory.path import Array
 from trajectory.setpoints import Setpoints
 
 _INT32 = np.iinfo(np.int32)

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinematics import InvalidValue
-from trajectory.path import Array
+from kinematics import Array, InvalidValue
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_ ./-]*")
 

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from kinematics import InvalidValue
 from trajectory.drive_files import cia402, pmac, ros2, xps, zaber
 from trajectory.drive_files.drive import Drive
-from trajectory.setpoint_file import setpoints_text
-from trajectory.setpoints import Setpoints
+from trajectory.setpoints import Setpoints, setpoints_text
 
 Writer = Callable[[str, Setpoints, Drive], dict[str, str | bytes]]
 

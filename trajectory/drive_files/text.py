@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from trajectory.path import Array
+from kinematics import Array
 from trajectory.setpoints import Setpoints
 
 DECIMALS = 9  # of a degree or a millimetre: 2e-11 rad, 1e-12 m

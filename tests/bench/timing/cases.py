@@ -6,12 +6,12 @@ import math
 from dataclasses import dataclass, replace
 
 from kinematics import Heli4, Mechanism
-from studies.load import load_study
-from studies.locate import study_path
-from studies.setup import limits_of, path_of, pose_bounds_of, robot_of
+from kinematics.arrays import Array
+from studies.building.load import load_study
+from studies.building.objects import limits_of, path_of, pose_bounds_of, robot_of
+from studies.study_file.locate import study_path
 from trajectory import AdeptCycle, Limits, Path
-from trajectory.path import Array
-from trajectory.pose_bounds import PoseBounds
+from trajectory.paths.pose_bounds import PoseBounds
 
 
 @dataclass(frozen=True)

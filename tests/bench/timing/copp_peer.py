@@ -10,10 +10,10 @@ from __future__ import annotations
 import copp_py as copp
 import numpy as np
 
+from kinematics.arrays import Array
 from tests.bench.timing.cases import Case
 from tests.bench.timing.samples import sampled, smooth_law
 from trajectory import TimedPath, TimeLaw, TimingFailed
-from trajectory.path import Array
 
 STATIONS = 1001
 _ROUNDS = 20

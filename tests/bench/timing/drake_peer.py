@@ -13,10 +13,10 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import PrismaticJoint, SpatialInertia
 from pydrake.trajectories import PiecewisePolynomial
 
+from kinematics.arrays import Array
 from tests.bench.timing.cases import Case
 from tests.bench.timing.samples import Samples, sampled
 from trajectory import TimedPath, TimeLaw, TimingFailed
-from trajectory.path import Array
 
 INTERVALS = 1000
 _ROUNDS = 8

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from kinematics import LinkwrightError
 from tests.bench.timing.cases import Case
 from trajectory import Limits, LimitsExceeded, TimedMotion, Verification, repair, verify
-from trajectory.repair import REPAIRABLE
+from trajectory.cycles.least_stretch import REPAIRABLE
 
 REPEATS = 3
 LONG = 5.0  # seconds: what takes longer is repeated once

@@ -13,10 +13,10 @@ from __future__ import annotations
 import numpy as np
 from ruckig import InputParameter, Result, Ruckig, Trajectory
 
+from kinematics.arrays import Array
 from tests.bench.timing.cases import Case
 from tests.bench.timing.samples import sampled
 from trajectory import TimedPath, TimeLaw, TimingFailed
-from trajectory.path import Array
 
 STATIONS = 1001
 _GRID = 40

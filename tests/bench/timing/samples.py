@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics.dynamics import inverse_dynamics
-from kinematics.motion import JointMotion, actuator_motion
+from kinematics import actuator_motion, inverse_dynamics
+from kinematics.arrays import Array
+from kinematics.dynamics.chain_rule import JointMotion
 from tests.bench.timing.cases import Case
 from trajectory import TimedPath, TimeLaw, TimingFailed
-from trajectory.path import Array
 
 _UNFAIR = 1e-3  # relative: a peer's law that had to be changed so much is not its own
 

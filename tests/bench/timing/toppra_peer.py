@@ -14,11 +14,10 @@ from toppra.algorithm import TOPPRA
 from toppra.constraint import DiscretizationType, LinearConstraint, SecondOrderConstraint
 from toppra.interpolator import AbstractGeometricPath
 
-from kinematics.dynamics import inverse_dynamics
-from kinematics.motion import actuator_motion
+from kinematics import actuator_motion, inverse_dynamics
+from kinematics.arrays import Array
 from tests.bench.timing.cases import Case
 from trajectory import Path, PoseSpline, TimedPath, TimeLaw, TimingFailed
-from trajectory.path import Array
 
 WAYPOINTS = 501
 Dynamics = Callable[[Array, Array, Array], Array]

@@ -1,0 +1,83 @@
+"""A certified worst case: the largest bound of a margin that is proved, to a tolerance."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from design.budget import Budget
+from design.certificates.certificate import MOST_BOXES, SEED, Certificate, Progress, answer, checked_boxes, suspects
+from design.claims import Statement
+from design.region import Region
+from kinematics import FviBounds, Mechanism, positive
+
+_MOST_TRIES = 12  # of bounds, the refuted ones included
+_COARSEST = 6  # doublings of the tolerance
+_SHARES = 4  # one try and a bisection of the doublings
+
+
+@dataclass(frozen=True)
+class BestBound:
+    """A certified worst case.
+
+    Attributes:
+        certificate: proved; its `at_least` is the bound.
+        sampled: the lowest value that a search found, so the true worst lies between the two.
+    """
+
+    certificate: Certificate
+    sampled: float
+
+
+def best_bound(
+    robot: Mechanism,
+    region: Region,
+    margin: str,
+    tolerance: float,
+    *,
+    bounds: FviBounds | None = None,
+    characteristic_length: float | None = None,
+    most_boxes: int = MOST_BOXES,
+    seconds: float = math.inf,
+    progress: Progress = lambda _: None,
+) -> BestBound | None:
+    """The largest bound that is proved, to a tolerance in the margin's unit; None where nothing is proved.
+
+    The first try is the lowest sampled value less the tolerance. Where that is refuted the counterexample's value takes
+    its place; where it stays undecided the smallest 2^k tolerances that are proved are sought, so compare `sampled`
+    with what was proved. A bound that is not positive says nothing of a positive margin and is not tried for it,
+    unless the tolerance itself asks for it.
+
+    Args:
+        most_boxes, seconds: for all tries together; a single one gets a quarter of the boxes and half of the time left.
+        robot, region, margin, bounds, characteristic_length, progress: as in `certify`.
+    """
+    tolerance, budget = positive("tolerance", tolerance), Budget(seconds)
+    statement = Statement.of(robot, margin, 0.0, bounds, characteristic_length)  # the bound is what is sought
+    region.check(robot.pose_names)
+    share = max(1, checked_boxes(most_boxes) // _SHARES)
+    sampled = float(statement.value(suspects(statement, region, 10 * SEED, budget.share(_SHARES))[0]))
+    best: Certificate | None = None
+    undecided, proved, doublings = -1, _coarsest(sampled, tolerance) + 1, 0
+    for _ in range(_MOST_TRIES):
+        if not np.isfinite(sampled) or undecided + 1 >= proved or budget.spent:
+            break
+        attempt = replace(statement, at_least=sampled - math.ldexp(tolerance, doublings))
+        certificate = answer(attempt, region, share, budget.share(2), progress)
+        if certificate.counterexample is not None:
+            sampled = float(statement.value(certificate.counterexample))
+            continue
+        if certificate.status == "proved":
+            best, proved = certificate, doublings
+        else:
+            undecided = doublings
+        doublings = (undecided + proved) // 2
+    return BestBound(best, sampled) if best else None
+
+
+def _coarsest(sampled: float, tolerance: float) -> int:
+    """How often the tolerance may be doubled before the bound of a positive margin is not positive."""
+    room = sampled / tolerance if sampled > 0.0 else math.inf
+    return _COARSEST if room > 2.0**_COARSEST else max(0, math.ceil(math.log2(room)) - 1)

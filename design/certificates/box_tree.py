@@ -1,0 +1,133 @@
+"""How a region was cut into boxes: a binary tree whose leaves cover it because no cut leaves a gap.
+
+A box is cut in the middle of one coordinate, and both halves keep the face between them. The codes are stored level by
+level, so that any list of codes is either one whole tree or refused; the boxes follow from the root alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from design.errors import BrokenCertificate
+from design.region import Cylinder, Region
+from kinematics import Array
+
+PROVED, OUTSIDE, LEFT = -1, -2, -3  # leaves; a code from 0 on is the coordinate that is cut
+BATCH = 1 << 16
+MOST_NODES = 1 << 24  # of a tree: some hundred megabytes while it is walked
+_MOST_LEVELS = 2200  # for each coordinate: so many halvings leave no two doubles between its bounds
+
+
+def root(region: Region, names: tuple[str, ...]) -> tuple[Array, Array]:
+    """(1, n) bounds of a box around the region."""
+    low, high = np.array([region.intervals[name] for name in names]).T
+    return low[None].copy(), high[None].copy()
+
+
+def halves(low: Array, high: Array, axis: Array) -> tuple[Array, Array]:
+    """(k, n) boxes cut along axis (k,) -> (2 k, n): lower and upper half of each, side by side."""
+    rows = np.arange(len(low))
+    cut = 0.5 * low[rows, axis] + 0.5 * high[rows, axis]
+    lows, highs = np.repeat(low, 2, axis=0), np.repeat(high, 2, axis=0)
+    highs[2 * rows, axis] = cut
+    lows[2 * rows + 1, axis] = cut
+    return lows, highs
+
+
+def outside(region: Region, low: Array, high: Array, names: tuple[str, ...]) -> Array:
+    """(k,) whether no point of the box is in the region; only then, whatever the rounding."""
+    if not isinstance(region, Cylinder):
+        return np.zeros(len(low), dtype=bool)
+    columns = [names.index("x"), names.index("y")]
+    nearest = np.maximum(np.maximum(low[:, columns], -high[:, columns]), 0.0)
+    return (nearest**2).sum(axis=1) * (1.0 - 1e-15) > region.radius**2 * (1.0 + 1e-15)
+
+
+class Tree:
+    """The codes of the nodes in the order in which they were decided, and where their halves are."""
+
+    def __init__(self) -> None:
+        self._code = np.full(1 << 12, LEFT, dtype=np.int8)
+        self._first = np.full(1 << 12, -1, dtype=np.int64)
+        self._size = 1
+
+    def leaves(self, nodes: Array, code: int) -> None:
+        """Decide these nodes (k,)."""
+        self._code[nodes] = code
+
+    def cut(self, nodes: Array, axis: Array) -> Array:
+        """Cut these nodes (k,) along axis (k,); (2 k,) their halves side by side."""
+        end = self._size + 2 * len(nodes)
+        while end > len(self._code):
+            self._code = np.concatenate([self._code, np.full_like(self._code, LEFT)])
+            self._first = np.concatenate([self._first, np.full_like(self._first, -1)])
+        self._code[nodes] = axis
+        self._first[nodes] = np.arange(self._size, end, 2)
+        found = np.arange(self._size, end)
+        self._size = end
+        return found
+
+    def by_level(self) -> Array:
+        """(nodes,) int8 codes, the root first, then each level from left to right."""
+        levels, level = [], np.zeros(1, dtype=np.int64)
+        while level.size:
+            code = self._code[level]
+            levels.append(code)
+            first = self._first[level[code >= 0]]
+            level = np.stack([first, first + 1], axis=1).ravel()
+        return np.concatenate(levels)
+
+
+def leaves(codes: Array, low: Array, high: Array) -> Iterator[tuple[Array, Array, Array]]:
+    """Codes (k,) of leaves and their bounds (k, n) twice, in batches, from the codes by level and the root's bounds.
+
+    Depth first, so that no more than a batch of boxes a level is in memory, however many a level has.
+
+    Raises:
+        BrokenCertificate: the codes are not one whole tree over the root's coordinates.
+    """
+    first = _first_halves(codes, low.shape[1])
+    stack = [(0, low, high)]
+    while stack:
+        start, low, high = stack.pop()
+        if len(low) > BATCH:
+            stack.append((start + BATCH, low[BATCH:], high[BATCH:]))
+            low, high = low[:BATCH], high[:BATCH]
+        code = codes[start : start + len(low)]
+        leaf = code < 0
+        if leaf.any():
+            yield code[leaf], low[leaf], high[leaf]
+        if not leaf.all():
+            stack.append((int(first[start]), *halves(low[~leaf], high[~leaf], code[~leaf].astype(np.int64))))
+
+
+def _first_halves(codes: Array, coordinates: int) -> Array:
+    """(nodes,) where the halves of each node, or of the next one that is cut, start: one after every node before them.
+
+    Raises:
+        BrokenCertificate: as in `leaves`.
+    """
+    if len(codes) > MOST_NODES:
+        raise BrokenCertificate(f"its list of boxes has {len(codes)} entries, more than {MOST_NODES}")
+    if (codes >= coordinates).any() or (codes < LEFT).any():
+        raise BrokenCertificate("its list of boxes has a code of no meaning")
+    cut = codes >= 0
+    ends = 1 + 2 * np.cumsum(cut, dtype=np.int32)  # of the list, as far as the nodes up to each one tell
+    if not len(codes) or ends[-1] > len(codes) or (ends <= np.arange(1, len(codes) + 1))[:-1].any():
+        raise BrokenCertificate("its list of boxes does not cover the region")
+    if ends[-1] < len(codes):
+        raise BrokenCertificate("its list of boxes goes on beyond the region")
+    ends[1:], ends[0] = ends[:-1].copy(), 1  # the halves before a node's own
+    _require_few_levels(ends, _MOST_LEVELS * coordinates)
+    return ends
+
+
+def _require_few_levels(first: Array, most: int) -> None:
+    """A chain of a million boxes would be walked box by box."""
+    level, count = 0, 0
+    while level < len(first) - 1 and (below := int(first[level])) > level:
+        level, count = below, count + 1
+        if count > most:
+            raise BrokenCertificate(f"its boxes are cut more than {most} times")

@@ -1,0 +1,103 @@
+"""Cut a region into boxes until each is proved, one fails, or the allowance of boxes or of time is used up.
+
+Boxes are taken depth first in batches, so memory stays bounded by a few batches a level.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from design.budget import Budget
+from design.certificates.box_tree import BATCH, OUTSIDE, PROVED, Tree, halves, outside, root
+from design.certificates.lower_bounds import LowerBounds
+from design.certificates.refutation import Refutation, Refuter
+from design.certificates.symmetry import Mirrors, one_side
+from design.region import Region
+from kinematics import Array
+
+SMALLEST = 1e-6  # boxes narrower than this part of the region in every coordinate are not cut
+_MOST_SMALL = 1000  # of those, before the search ends
+
+
+@dataclass(frozen=True)
+class Search:
+    """What the search came to.
+
+    Attributes:
+        codes: (nodes,) the tree by level.
+        boxes: how many boxes were bounded.
+        left: (k, 2, n) lower and upper bounds of the boxes that were not proved.
+        refutation: a pose that fails, else None.
+    """
+
+    codes: Array
+    boxes: int
+    left: Array
+    refutation: Refutation | None
+
+
+def search(
+    bounds: LowerBounds,
+    refuter: Refuter,
+    region: Region,
+    mirrors: Mirrors,
+    most_boxes: int,
+    budget: Budget,
+    progress: Callable[[str], None],
+) -> Search:
+    """Bound boxes, cut those that stay open along the coordinate that spreads their claims the most.
+
+    Args:
+        bounds: of the statement, over a region that holds this one.
+        refuter: of the same statement.
+        mirrors: those that allow to look at one side only.
+        most_boxes, budget: what ends it undecided, with the boxes that are left.
+        progress: told how far it is after each batch.
+    """
+    names = bounds.statement.robot.pose_names
+    low, high = one_side(*root(region, names), mirrors, names)
+    extent = np.where(high[0] > low[0], high[0] - low[0], 1.0)
+    tree = Tree()
+    stack = [(np.zeros(1, dtype=np.int64), low, high)]
+    small: list[Array] = []
+    boxes, refutation = 0, None
+    while stack and boxes < most_boxes and len(small) < _MOST_SMALL and refutation is None and not budget.spent:
+        nodes, low, high = _take(stack, min(BATCH, most_boxes - boxes))
+        off = outside(region, low, high, names)
+        tree.leaves(nodes[off], OUTSIDE)
+        nodes, low, high = nodes[~off], low[~off], high[~off]
+        lowest, spread = bounds.lowest(low, high)
+        boxes += len(low)
+        progress(f"{boxes} boxes bounded, {sum(len(top[0]) for top in stack)} more waiting")
+        proved = lowest >= 0.0
+        tree.leaves(nodes[proved], PROVED)
+        nodes, low, high, spread = nodes[~proved], low[~proved], high[~proved], spread[~proved]
+        if not len(nodes):
+            continue
+        refutation = refuter.refutation(region, 0.5 * low + 0.5 * high)
+        tiny = ((high - low) / extent <= SMALLEST).all(axis=1)
+        small += list(np.stack([low[tiny], high[tiny]], axis=1))
+        nodes, low, high, spread = nodes[~tiny], low[~tiny], high[~tiny], spread[~tiny]
+        axis = bounds.axis(low, high, spread)
+        stack.append((tree.cut(nodes, axis), *halves(low, high, axis)))
+    left = [np.stack([low, high], axis=1) for _, low, high in stack]
+    left.append(np.array(small).reshape(-1, 2, len(names)))
+    return Search(tree.by_level(), boxes, np.concatenate(left), refutation)
+
+
+def _take(stack: list[tuple[Array, Array, Array]], most: int) -> tuple[Array, Array, Array]:
+    """At most `most` boxes from the top of the stack, the deepest first."""
+    taken, count = [], 0
+    while stack and count < most:
+        top = stack.pop()
+        room = most - count
+        if len(top[0]) > room:
+            stack.append(tuple(part[:-room] for part in top))  # type: ignore[arg-type]
+            top = tuple(part[-room:] for part in top)  # type: ignore[assignment]
+        taken.append(top)
+        count += len(top[0])
+    nodes, low, high = (np.concatenate(parts) for parts in zip(*taken, strict=True))
+    return nodes, low, high

@@ -1,0 +1,181 @@
+"""Certificates: a margin is at least a bound at every pose of a region, not only at sampled ones.
+
+    certify(robot, region, "fvi", at_least=1.0).status  ->  "proved", "refuted" or "undecided"
+
+What a proof rests on, beside the lemmas of `claims` and the mean-value theorem: IEEE 754 arithmetic, the accuracy that
+`kinematics.interval` assumes of the sine, cosine and arctangent, and CasADi's algebra, which builds the expressions and
+their derivatives. What is proved is a statement about real numbers: geometry, region and bound are the exact values of
+their doubles, and so are the constants written into the model (2 pi among them, and products of two such constants,
+which CasADi rounds once). A region's boundary counts as inside. Plain evaluation only chooses signs, scalings, cuts and
+counterexamples.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+from design.budget import Budget
+from design.certificates.box_tree import MOST_NODES
+from design.certificates.branch_and_bound import Search, search
+from design.certificates.lower_bounds import LowerBounds
+from design.certificates.refutation import Refuter
+from design.certificates.symmetry import Mirrors, mirrors_of
+from design.claims import Statement
+from design.region import Region
+from design.sampling import worst_poses
+from kinematics import Array, FviBounds, Mechanism, rounded_down, whole
+
+Progress = Callable[[str], None]
+MOST_BOXES = 4_000_000
+EDITION = 2  # of what a certificate claims beside its margin; since 2: that every limb reaches
+SEED = 20_000  # poses of the grid that looks for a counterexample first
+_MOST_PER_COORDINATE = 200
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """A claim, the answer, and for a proof the boxes that anyone can check again.
+
+    Attributes:
+        mechanism, digest, conditions: class name, SHA-256 of the geometry, and of joint ranges and working mode.
+        region, margin, at_least: the claim.
+        bounds, characteristic_length: what the FVI is measured with; length in metres.
+        version, edition: of the program that made it, and `EDITION` then.
+        status: "proved", "refuted" or "undecided".
+        counterexample: (n,) a pose where the margin is below the bound beyond rounding, or that a limb cannot reach.
+        within_reach: whether every limb reaches the counterexample; True without one.
+        boxes: how many boxes were bounded.
+        codes: (nodes,) the tree of boxes by level; see `design.tree`. Empty unless proved.
+        left: (k, 2, n) lower and upper bounds of the boxes that were not proved.
+        mirrors: coordinates whose signs change together without changing the margin; of each only the side where its
+            first one is at least 0 was looked at. See `design.symmetry`.
+    """
+
+    mechanism: str
+    digest: str
+    conditions: str
+    region: Region
+    margin: str
+    at_least: float
+    bounds: FviBounds
+    characteristic_length: float
+    version: str
+    edition: int
+    status: str
+    counterexample: Array | None
+    within_reach: bool
+    boxes: int
+    codes: Array
+    left: Array
+    mirrors: Mirrors
+
+    def statement(self, robot: Mechanism) -> Statement:
+        """What it says, of a robot that is still to be shown to be the one it was made for."""
+        return Statement(robot, self.margin, self.at_least, self.bounds, self.characteristic_length)
+
+    def __str__(self) -> str:
+        claim = f"{self.mechanism}: {self.margin} >= {rounded_down(self.at_least, 6)} {self.status}"
+        return f"{claim} with {self.boxes} boxes" if self.within_reach else f"{claim}: out of reach"
+
+
+def certify(
+    robot: Mechanism,
+    region: Region,
+    margin: str,
+    *,
+    at_least: float,
+    bounds: FviBounds | None = None,
+    characteristic_length: float | None = None,
+    most_boxes: int = MOST_BOXES,
+    seconds: float = math.inf,
+    progress: Progress = lambda _: None,
+) -> Certificate:
+    """Prove or refute that a margin is at least a bound everywhere in a region.
+
+    Args:
+        robot: the mechanism with its geometry.
+        region: continuous in all coordinates, its boundary included.
+        margin: one of `robot.margins`.
+        at_least: the bound, in the margin's unit.
+        bounds, characteristic_length: as in `Mechanism.margin`.
+        most_boxes, seconds: after so many boxes, or so much time, the answer is "undecided", with the boxes left.
+        progress: told a line of text at each step.
+
+    Raises:
+        InvalidRegion: the region does not speak of the robot's coordinates.
+        InvalidValue: see `Statement`; or no box allowed, or more than a certificate can hold.
+    """
+    statement = Statement.of(robot, margin, at_least, bounds, characteristic_length)
+    region.check(robot.pose_names)
+    return answer(statement, region, checked_boxes(most_boxes), Budget(seconds), progress)
+
+
+def checked_boxes(most_boxes: object) -> int:
+    """How many boxes are allowed, no more than a certificate can hold.
+
+    Raises:
+        InvalidValue: not such a number.
+    """
+    return whole("most_boxes", most_boxes, 1, MOST_NODES // 2)
+
+
+def answer(statement: Statement, region: Region, most_boxes: int, budget: Budget, progress: Progress) -> Certificate:
+    """Look for a counterexample where the margin is lowest, then prove by boxes."""
+    what = f"certify {statement.margin} >= {statement.at_least:g}"
+    progress(f"{what}: looking for a counterexample")
+    refuter = Refuter(statement)
+    refutation = refuter.refutation(region, suspects(statement, region, SEED, budget.share(4)))
+    if refutation is not None:
+        mirrors = mirrors_of(statement.robot, region, statement.margin)
+        no_boxes = np.empty(0, dtype=np.int8), 0, np.empty((0, 2, len(refutation.pose)))
+        return _certificate(statement, region, mirrors, Search(*no_boxes, refutation))
+    lower = LowerBounds(statement, region)
+    return answer_by_boxes(lower, refuter, region, most_boxes, budget, lambda done: progress(f"{what}: {done}"))
+
+
+def answer_by_boxes(
+    lower: LowerBounds, refuter: Refuter, region: Region, most_boxes: int, budget: Budget, progress: Progress
+) -> Certificate:
+    """Prove by boxes; the region may be a part of the one that the lower bounds were made for."""
+    mirrors = mirrors_of(lower.statement.robot, region, lower.statement.margin)
+    found = search(lower, refuter, region, mirrors, most_boxes, budget, progress)
+    return _certificate(lower.statement, region, mirrors, found)
+
+
+def suspects(statement: Statement, region: Region, about: int, budget: Budget) -> Array:
+    """(k, n) poses where the margin is lowest as far as a grid and descents tell, the lowest first."""
+    measured = {"bounds": statement.bounds, "characteristic_length": statement.length}
+    if region.dimension == 0:
+        return region.from_unit(np.empty((1, 0)), statement.robot.pose_names)
+    about = min(about, _MOST_PER_COORDINATE**region.dimension)
+    asked: dict[str, Any] = measured | {"about": about, "seconds": budget.seconds}
+    return worst_poses(statement.robot, region, statement.margin, **asked).poses
+
+
+def _certificate(statement: Statement, region: Region, mirrors: Mirrors, found: Search) -> Certificate:
+    refutation, proved = found.refutation, not len(found.left)
+    return Certificate(
+        mechanism=type(statement.robot).__name__,
+        digest=statement.robot.geometry.digest,
+        conditions=statement.robot.conditions_digest,
+        region=region,
+        margin=statement.margin,
+        at_least=statement.at_least,
+        bounds=statement.bounds,
+        characteristic_length=statement.length,
+        version=version("linkwright"),
+        edition=EDITION,
+        status="refuted" if refutation else "proved" if proved else "undecided",
+        counterexample=refutation.pose if refutation else None,
+        within_reach=refutation is None or refutation.within_reach,
+        boxes=found.boxes,
+        codes=found.codes if proved and not refutation else np.empty(0, dtype=np.int8),
+        left=found.left,
+        mirrors=mirrors,
+    )

@@ -1,0 +1,112 @@
+"""The largest region of a family over which a margin is proved, here a cylinder by its radius.
+
+A lower bound of what holds: beyond it the claim fails, or was not proved with the boxes allowed. `certified_cells` has
+the cells of a section.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from design.budget import Budget
+from design.certificates.certificate import MOST_BOXES, Certificate, certify
+from design.region import Cylinder
+from kinematics import Array, FviBounds, InvalidValue, Mechanism, positive
+
+
+@dataclass(frozen=True)
+class CertifiedRegion:
+    """What is proved of a family of regions.
+
+    Attributes:
+        margin, at_least: the claim.
+        certificates: proofs whose regions together are the certified one; none where nothing is proved.
+        boxes: how many boxes were bounded, those of attempts that came to nothing included.
+        left: (k, 2, n) lower and upper bounds of boxes that were neither proved nor refuted.
+        complete: whether the search came to its end; not where its time ran out.
+        seconds: wall-clock time.
+    """
+
+    margin: str
+    at_least: float
+    certificates: tuple[Certificate, ...]
+    boxes: int
+    left: Array
+    complete: bool
+    seconds: float
+
+    @property
+    def radius(self) -> float:
+        """Of the largest proved cylinder [m]; 0 where none is."""
+        radii = [c.region.radius for c in self.certificates if isinstance(c.region, Cylinder)]
+        return max(radii, default=0.0)
+
+    def cells(self, axes: tuple[str, str]) -> Array:
+        """(k, 2, 2) lower and upper bounds of the proved cells in the plane of two coordinates."""
+        bounds = [[c.region.intervals[name] for name in axes] for c in self.certificates]
+        return np.array(bounds).reshape(-1, 2, 2).swapaxes(1, 2)
+
+    def area(self, axes: tuple[str, str]) -> float:
+        """Of the proved cells in the plane of two coordinates, which do not overlap."""
+        cells = self.cells(axes)
+        return float((cells[:, 1] - cells[:, 0]).prod(axis=1).sum())
+
+
+def certified_cylinder(
+    robot: Mechanism,
+    region: Cylinder,
+    margin: str,
+    *,
+    at_least: float,
+    tolerance: float | None = None,
+    bounds: FviBounds | None = None,
+    characteristic_length: float | None = None,
+    most_boxes: int = MOST_BOXES,
+    seconds: float = math.inf,
+) -> CertifiedRegion:
+    """The largest radius, to a tolerance, up to the region's, with which the margin is proved; by bisection.
+
+    A smaller cylinder lies inside a larger one, so what is proved of one holds in all smaller ones.
+
+    Args:
+        robot: the mechanism with its geometry.
+        region: the largest cylinder of the family; its other coordinates hold for all.
+        margin, at_least, bounds, characteristic_length, most_boxes: as in `certify`, for each radius.
+        tolerance: of the radius [m]; a thousandth of the region's by default.
+        seconds: for all radii together; a single one gets half of what is left.
+
+    Raises:
+        InvalidRegion, InvalidValue: see `certify`; or a tolerance not above 0 or finer than doubles.
+    """
+    tolerance = positive("tolerance", region.radius / 1000.0 if tolerance is None else tolerance)
+    if tolerance < (finest := float(np.spacing(region.radius))):
+        raise InvalidValue("tolerance", tolerance, f"at least {finest:.3g} m, the step between radii of this size")
+    started, best, boxes, budget = time.perf_counter(), [], 0, Budget(seconds)
+    others = {name: pair for name, pair in region.intervals.items() if name not in ("x", "y")}
+    left = np.empty((0, 2, len(robot.pose_names)))
+    low, high, radius = 0.0, region.radius, region.radius
+    while True:
+        found = certify(
+            robot,
+            Cylinder(radius, **others),
+            margin,
+            at_least=at_least,
+            bounds=bounds,
+            characteristic_length=characteristic_length,
+            most_boxes=most_boxes,
+            seconds=budget.share(2).seconds,
+        )
+        boxes += found.boxes
+        if found.status == "proved":
+            low, best = radius, [found]
+        else:
+            high, left = radius, found.left if found.status == "undecided" else left
+        radius = 0.5 * (low + high)
+        complete = high - low <= tolerance or low == region.radius
+        if complete or budget.spent or radius in (low, high):
+            break
+    return CertifiedRegion(margin, at_least, tuple(best), boxes, left, complete, time.perf_counter() - started)

@@ -1,0 +1,170 @@
+"""Rigorous lower bounds of the claims over boxes of poses.
+
+Two enclosures of each claim f over a box X with midpoint m: the natural one, and the centred form
+f(m) + G(X) (X - m) with the gradient's enclosure G. The centred form holds because finite natural bounds say that f is
+defined on all of the box, and G encloses every gradient on it. It is used only where whatever f branches on is decided
+on the box: f is then smooth, or has a kink (|x|, min) that G spans. All of it is rounded outward.
+"""
+
+from __future__ import annotations
+
+import casadi as ca
+import numba
+import numpy as np
+
+from design.claims import Numbers, Statement, claims_of
+from design.region import Region
+from kinematics import (
+    Array,
+    BlockProgram,
+    BoxProgram,
+    Mechanism,
+    Op,
+    Program,
+    bulk,
+    enclose,
+    evaluate,
+    over_spans,
+    replay,
+)
+
+_UP = 1.0 + 2.0**-48  # covers the roundings of products and of their sum over fewer than ten coordinates
+_TINY = 1e-300
+
+
+class LowerBounds:
+    """The claims of one margin and bound over boxes of a region.
+
+    Attributes:
+        statement: what the claims come from.
+        free: which pose coordinates are not fixed by the region; boxes may be split along these.
+    """
+
+    def __init__(self, statement: Statement, region: Region) -> None:
+        """Build the programs."""
+        robot, numbers = statement.robot, Numbers.symbols()
+        model = robot.model()
+        self.statement = statement
+        intervals = [region.intervals[name] for name in robot.pose_names]
+        self.free = np.array([i for i, (low, high) in enumerate(intervals) if low < high], dtype=np.int64)
+        self._extent = np.array([high - low if high > low else 1.0 for low, high in intervals])
+        middle = region.from_unit(np.full(region.dimension, 0.5), robot.pose_names)
+        claims = claims_of(statement, numbers, middle)
+        fixed = [*robot.geometry.vector(), *Numbers.values(statement)]
+        moving = ca.vertcat(*(model.pose[int(i)] for i in self.free)) if self.free.size else ca.SX(0, 1)
+        gradient = ca.jacobian(claims.expressions, moving)
+        symbols = [model.pose, ca.vec(claims.scaling), model.geometry, numbers.vector]
+
+        def program(*outputs: ca.SX) -> BoxProgram:
+            return BoxProgram.of(
+                Program.of(ca.Function("claims", symbols, ca.cse([ca.densify(o) for o in outputs]))), fixed
+            )
+
+        self._count = claims.expressions.numel()
+        conditions = _conditions(symbols, claims.expressions)
+        self._with_gradient = program(claims.expressions, gradient, conditions)
+        self._plain = program(claims.expressions)
+        self._slopes = self._count * (1 + self.free.size)  # where the conditions start
+        self._chosen, self._size = claims.chosen, claims.scaling.numel()
+        self._matrix = _plain_program(robot, claims.matrix, numbers, fixed) if claims.matrix is not None else None
+
+    def lowest(self, low: Array, high: Array) -> tuple[Array, Array]:
+        """Lower bounds and where to split.
+
+        Args:
+            low, high: (k, n) boxes.
+
+        Returns:
+            (k,) lower bound of the smallest claim, and (k, free) how much of the open claims' spread each coordinate
+            makes; infinite where it is unknown.
+        """
+        middle = np.clip(0.5 * low + 0.5 * high, low, high)
+        scaling = self._scaling(middle)
+        natural, highest = enclose(self._with_gradient, np.hstack([low, scaling]), np.hstack([high, scaling]))
+        decided = (natural[:, self._slopes :] == highest[:, self._slopes :]).all(axis=1)
+        at = np.hstack([middle, scaling])
+        point, _ = enclose(self._plain, at, at)
+        reach = np.nextafter(np.maximum(high - middle, middle - low)[:, self.free], np.inf)
+        lowest, spread = np.empty(len(low)), np.empty((len(low), self.free.size))
+        over_spans(
+            len(low),
+            lambda s: _combine(
+                self._count, natural[s], highest[s], decided[s], point[s], reach[s], lowest[s], spread[s]
+            ),
+        )
+        return lowest, spread
+
+    def axis(self, low: Array, high: Array, spread: Array) -> Array:
+        """(k,) the coordinate to cut: the largest spread, or the widest part of the region where that is unknown."""
+        if not self.free.size:
+            return np.zeros(len(low), dtype=np.int64)
+        unknown = ~np.isfinite(spread).all(axis=1) | (spread == 0.0).all(axis=1)
+        spread = np.where(unknown[:, None], ((high - low) / self._extent)[:, self.free], spread)
+        return self.free[spread.argmax(axis=1)]
+
+    def _scaling(self, middle: Array) -> Array:
+        """(k, size) the numbers of the claims' scaling, column by column."""
+        if self._matrix is None:
+            return np.empty((len(middle), 0))
+        (values,) = evaluate(self._matrix, middle)
+        return np.swapaxes(self._chosen(values), -1, -2).reshape(len(middle), self._size)
+
+
+def _conditions(symbols: list[ca.SX], expressions: ca.SX) -> ca.SX:
+    """(k,) all that the expressions branch on or jump with: 0 or 1, or a sign."""
+    found: list[ca.SX] = []
+
+    def noted(condition: ca.SX) -> ca.SX:
+        found.append(condition)
+        return condition
+
+    def branch(condition: ca.SX, value: ca.SX) -> ca.SX:
+        noted(ca.logic_not(condition))
+        return ca.if_else(condition, value, 0)
+
+    program = Program.of(ca.Function("claims", symbols, [ca.densify(expressions)]))
+    replay(
+        program,
+        [symbol[i] for symbol in symbols for i in range(symbol.numel())],
+        {
+            Op.LT: lambda a, b: noted(ca.lt(a, b)),
+            Op.LE: lambda a, b: noted(ca.le(a, b)),
+            Op.NOT: lambda a, _: noted(ca.logic_not(a)),
+            Op.SIGN: lambda a, _: noted(ca.sign(a)),
+            Op.IF_ELSE_ZERO: branch,
+        },
+    )
+    return ca.vertcat(*found) if found else ca.SX(0, 1)
+
+
+def _plain_program(robot: Mechanism, matrix: ca.SX, numbers: Numbers, fixed: list[float]) -> BlockProgram:
+    model = robot.model()
+    symbols = ca.vertcat(model.geometry, numbers.vector)
+    matrix = ca.substitute(matrix, symbols, ca.SX(fixed))
+    return bulk(ca.Function("matrix", [model.pose], [ca.densify(matrix)]))
+
+
+@numba.njit(nogil=True, cache=True, error_model="numpy")
+def _combine(count, natural, highest, decided, point, reach, lowest, spread):  # type: ignore[no-untyped-def]
+    """Centred form of each claim, rounded outward; its smallest lower bound and the open claims' spread."""
+    n = reach.shape[1]
+    for i in range(natural.shape[0]):
+        least = np.inf
+        spread[i, :] = 0.0
+        for c in range(count):
+            best = natural[i, c]
+            if not best >= 0.0:
+                loss, width = 0.0, highest[i, c] - best
+                for k in range(n):
+                    j = count + c * n + k
+                    loss += max(abs(natural[i, j]), abs(highest[i, j])) * reach[i, k]
+                # Finite natural bounds: the claim is defined on all of the box.
+                if decided[i] and width - width == 0.0 and loss - loss == 0.0:
+                    centred = point[i, c] - (loss * _UP + _TINY)
+                    best = max(best, centred - abs(centred) * 2.0**-52 - _TINY)
+                if not best >= 0.0:
+                    for k in range(n):
+                        j = count + c * n + k
+                        spread[i, k] = max(spread[i, k], max(abs(natural[i, j]), abs(highest[i, j])) * reach[i, k])
+            least = min(least, best)
+        lowest[i] = least

@@ -1,0 +1,53 @@
+"""Poses at which a statement is false beyond rounding: shown in interval arithmetic, not by plain numbers.
+
+Plain evaluation only chooses which poses are tried.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from design.claims import Numbers, Statement, defining_rows
+from design.region import Region
+from kinematics import Array, BoxProgram, Program, enclose
+
+_MOST = 1024  # poses that are tried at once, the lowest first
+
+
+@dataclass(frozen=True)
+class Refutation:
+    """A pose (n,) of the region where the margin is below the bound, or that a limb cannot reach."""
+
+    pose: Array
+    within_reach: bool
+
+
+class Refuter:
+    """Of one statement."""
+
+    def __init__(self, statement: Statement) -> None:
+        self.statement = statement
+        robot, numbers = statement.robot, Numbers.symbols()
+        model = robot.model()
+        reach, rows = robot.reach(model.pose, model.g), defining_rows(statement, numbers)
+        self._limbs = reach.numel()
+        symbols = [model.pose, model.geometry, numbers.vector]
+        program = Program.of(ca.Function("refute", symbols, [ca.densify(ca.vertcat(reach, rows))]))
+        self._rows = BoxProgram.of(program, [*robot.geometry.vector(), *Numbers.values(statement)])
+
+    def refutation(self, region: Region, poses: Array) -> Refutation | None:
+        """The worst of the poses (k, n) that lie in the region and are shown to refute; None where none is."""
+        poses = poses[region.contains(poses, self.statement.robot.pose_names)]
+        values = self.statement.value(poses)
+        failing = np.flatnonzero(~(values >= self.statement.at_least))
+        if not len(failing):
+            return None
+        order = np.argsort(np.nan_to_num(values[failing], nan=-np.inf), kind="stable")
+        poses = poses[failing[order[:_MOST]]]
+        _, highest = enclose(self._rows, poses, poses)
+        beyond = highest[:, : self._limbs].min(axis=1) < 0.0
+        shown = np.flatnonzero(highest.min(axis=1) < 0.0)
+        return Refutation(poses[shown[0]], not bool(beyond[shown[0]])) if len(shown) else None

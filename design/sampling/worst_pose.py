@@ -1,0 +1,136 @@
+"""Where a margin is worst: a dense grid, then a descent between its points.
+
+A grid alone overstates the worst case, so the lowest grid poses are followed downhill until the step is far below the
+grid's. The answer is still a sample's, an upper bound of the true worst, and it is named so.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from design.budget import Budget
+from design.region import Region, unit_grid
+from design.sampling.sweep import sweep
+from kinematics import Array, FviBounds, Mechanism, whole
+
+DENSE = 1_000_000  # poses of a grid that is far denser than any that is solved on
+
+
+@dataclass(frozen=True)
+class WorstPoses:
+    """Local minima of a margin over a region, the lowest first.
+
+    Attributes:
+        values: (k,) the margin; -inf where a limb cannot reach and the margin has no value.
+        poses: (k, n).
+        sampled: how many poses of the grid were looked at.
+        complete: whether that was all of them; not where the time ran out.
+        typical: mean modulus of the margin over a few poses of the region, for its scale; NaN where it has none.
+    """
+
+    values: Array
+    poses: Array
+    sampled: int
+    complete: bool
+    typical: float
+
+    @property
+    def value(self) -> float:
+        """The worst of all."""
+        return float(self.values[0])
+
+    @property
+    def pose(self) -> Array:
+        """(n,) where it is."""
+        return self.poses[0]
+
+
+def dense_counts(dimension: int, about: int) -> tuple[int, ...]:
+    """Equal counts for a grid of roughly `about` poses, odd so that the middle is on it."""
+    each = max(3, round(about ** (1.0 / max(1, dimension))))
+    return (each + 1 - each % 2,) * dimension
+
+
+def worst_poses(
+    robot: Mechanism,
+    region: Region,
+    margin: str,
+    *,
+    bounds: FviBounds | None = None,
+    characteristic_length: float | None = None,
+    about: int = DENSE,
+    descents: int = 64,
+    seconds: float = math.inf,
+) -> WorstPoses:
+    """Local minima of a margin, from a grid of about that many poses and descents between them.
+
+    Args:
+        robot: the mechanism with its geometry.
+        region: where to look.
+        margin: one of `robot.margins`.
+        bounds, characteristic_length: as in `Mechanism.margin`.
+        about: size of the grid.
+        descents: how many of the lowest grid poses are followed downhill.
+        seconds: the grid is left where it is after so many; see `WorstPoses.complete`.
+
+    Raises:
+        InvalidRegion, InvalidValue: the region or the margin is not the robot's, or a number means nothing.
+    """
+    names, budget = robot.pose_names, Budget(seconds)
+    region.check(names)
+    about, descents = whole("about", about, 1), whole("descents", descents, 1)
+    counts = dense_counts(region.dimension, about)
+    few = robot.margin(margin, region.spread(names), bounds, characteristic_length)
+
+    def value(unit: Array) -> Array:
+        found = robot.margin(margin, region.from_unit(unit, names), bounds, characteristic_length)
+        return np.where(np.isnan(found), -np.inf, found)
+
+    if region.dimension == 0:
+        pose = region.from_unit(np.empty((1, 0)), names)
+        found = value(np.empty((1, 0)))
+        return WorstPoses(found, pose, 1, True, _typical(few))
+    grid = sweep(value, budget.during(unit_grid(counts)), keep=4 * descents)
+    unit, values = descend(value, grid.at, 1.0 / (np.array(counts) - 1.0))
+    order = np.argsort(values, kind="stable")
+    unit, values = unit[order], values[order]
+    poses = region.from_unit(unit, names)
+    extent = region.extent(names)
+    distinct = _distinct(poses, np.where(extent > 0.0, extent, 1.0))
+    complete = grid.poses == math.prod(counts)
+    return WorstPoses(values[distinct], poses[distinct], grid.poses, complete, _typical(few))
+
+
+def _typical(values: Array) -> float:
+    finite = np.abs(values[np.isfinite(values)])
+    return float(finite.mean()) if len(finite) else math.nan
+
+
+def descend(value, unit: Array, step: Array, rounds: int = 40) -> tuple[Array, Array]:  # type: ignore[no-untyped-def]
+    """Compass search of all points at once inside the unit cube; a point without a better neighbour halves its step."""
+    k = unit.shape[1]
+    moves = np.concatenate([np.eye(k), -np.eye(k)])
+    scale = np.ones(len(unit))
+    best = value(unit)
+    for _ in range(rounds):
+        trial = np.clip(unit[:, None, :] + scale[:, None, None] * (moves * step)[None], 0.0, 1.0)
+        values = value(trial)
+        choice = values.argmin(axis=1)
+        rows = np.arange(len(unit))
+        better = values[rows, choice] < best
+        unit = np.where(better[:, None], trial[rows, choice], unit)
+        best = np.where(better, values[rows, choice], best)
+        scale = np.where(better, scale, scale / 2.0)
+    return unit, best
+
+
+def _distinct(poses: Array, extent: Array) -> list[int]:
+    """Indices of poses that are not within a hundredth of the region of an earlier one."""
+    kept: list[int] = []
+    for i, pose in enumerate(poses):
+        if all(np.abs((pose - poses[j]) / extent).max() > 0.01 for j in kept):
+            kept.append(i)
+    return kept

@@ -1,0 +1,15 @@
+"""Optimal geometry: nonlinear programs over few poses, and the exchange of poses that makes them hold everywhere."""
+
+from design.synthesis.errors import SynthesisFailed
+from design.synthesis.exchange import worst_of
+from design.synthesis.nlp import Problem, active_sets
+from design.synthesis.synthesis import Synthesis, synthesise
+
+__all__ = [
+    "Problem",
+    "Synthesis",
+    "SynthesisFailed",
+    "active_sets",
+    "synthesise",
+    "worst_of",
+]

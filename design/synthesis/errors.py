@@ -1,0 +1,21 @@
+"""Errors of a synthesis."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kinematics import LinkwrightError
+
+if TYPE_CHECKING:
+    from design.synthesis.exchange import Candidate
+
+
+class SynthesisFailed(LinkwrightError):
+    """The optimisation has no answer to stand by; `best` is the best geometry that was seen all the same, or None."""
+
+    exit_status = 1
+
+    def __init__(self, reason: str, status: str, best: Candidate | None = None) -> None:
+        self.reason, self.status, self.best = reason, status, best
+        seen = f"; best found: {best}" if best is not None else ""
+        super().__init__(f"no optimum: {reason} (solver status: {status}){seen}")

@@ -1,0 +1,168 @@
+"""The rounds of a synthesis: an NLP over few poses, a dense search for worse ones, and the best geometry seen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from design.budget import Budget
+from design.region import Region
+from design.sampling import DENSE, WorstPoses, worst_poses
+from design.synthesis.errors import SynthesisFailed
+from design.synthesis.nlp import NlpSolution, Problem, solve
+from kinematics import Array, InvalidGeometry, Mechanism
+
+Progress = Callable[[str], None]
+_DIGITS = 8  # of a variable, so that a file holds exactly what was checked
+
+
+@dataclass(frozen=True)
+class Round:
+    """One exchange: what the NLP promised on its poses and what the dense search found."""
+
+    poses: int
+    promised: float
+    found: float
+    shortfall: float  # how far the worst requirement is below its bound; <= 0 when all hold
+    iterations: int
+    seconds: float
+
+    def __str__(self) -> str:
+        return (
+            f"{self.poses} poses, promised {self.promised:.6g}, dense search found {self.found:.6g}, "
+            f"requirements short by {max(self.shortfall, 0.0):.1e}"
+        )
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A geometry that was looked at densely, and that nothing says to be the best.
+
+    Attributes:
+        robot: the mechanism with this geometry.
+        worst: worst poses by margin, as far as a dense search looked.
+        objective: the worst value of the objective.
+        shortfall: how far the worst requirement is below its bound; <= 0 when all hold.
+    """
+
+    robot: Mechanism
+    worst: dict[str, WorstPoses]
+    objective: float
+    shortfall: float
+
+    @property
+    def rank(self) -> tuple[float, float]:
+        """The larger the better: whether requirements hold, then the objective."""
+        return -max(self.shortfall, 0.0), self.objective
+
+    def __str__(self) -> str:
+        short = f", requirements short by {self.shortfall:.3g}" if self.shortfall > 0.0 else ""
+        return f"{self.objective:.6g}{short} with {self.robot.geometry}"
+
+
+@dataclass
+class Exchange:
+    """What all rounds share, and the best geometry seen."""
+
+    problem: Problem
+    region: Region
+    about: int
+    budget: Budget
+    progress: Progress
+    seen: Candidate | None = field(default=None, init=False)
+
+    def note(self, robot: Mechanism, worst: dict[str, WorstPoses]) -> Candidate:
+        """A geometry that was looked at densely; the best one is kept."""
+        short = max((r.at_least - worst[r.margin].value for r in self.problem.requirements), default=-np.inf)
+        found = Candidate(robot, worst, worst[self.problem.objective].value, short)
+        if np.isfinite(found.objective) and (self.seen is None or found.rank > self.seen.rank):
+            self.seen = found
+        return found
+
+    def better_than(self, found: Candidate, slack: float) -> Candidate | None:
+        """The best geometry seen, where it beats the one that was found: the NLP is to be solved from there, too."""
+        best = self.seen
+        beats = best is not None and best.shortfall <= 0.0 and best.objective > found.objective + slack
+        return best if beats else None
+
+    def robot_of(self, solution: NlpSolution) -> Mechanism:
+        """The robot of a solution, its variables rounded.
+
+        Raises:
+            SynthesisFailed: the mechanism refuses this geometry.
+        """
+        try:
+            return self.problem.robot_with(rounded(self.problem, solution.values))
+        except InvalidGeometry as error:
+            what = f"the NLP came to what is no geometry within the variables' bounds: {error}"
+            raise SynthesisFailed(what, solution.status, self.seen) from error
+
+    def best_of(self, poses: Array, firsts: list[Array], sizes: Mapping[str, float]) -> NlpSolution:
+        """The best converged solution of all starts; each may take its share of the time."""
+        best: NlpSolution | None = None
+        for k, first in enumerate(firsts, start=1):
+            share = self.budget.share(len(firsts) - k + 2)
+            solution = solve(self.problem, poses, first, sizes, share.left)
+            self.progress(f"start {k} of {len(firsts)}: {solution.objective:.5g} ({solution.status})")
+            if solution.converged and (best is None or solution.objective > best.objective):
+                best = solution
+            if self.budget.spent:
+                break
+        return best if best is not None else self._fail(poses, firsts, solution)
+
+    def first_of(self, poses: Array, firsts: list[Array], sizes: Mapping[str, float]) -> NlpSolution:
+        """The first converged solution; the last optimum may not reach poses that were added, then the others start."""
+        for k, first in enumerate(firsts):
+            solution = solve(self.problem, poses, first, sizes, self.budget.share(len(firsts) - k).left)
+            if solution.converged:
+                return solution
+        return self._fail(poses, firsts, solution)
+
+    def require_time(self, done: str, solution: NlpSolution) -> None:
+        """Check the budget.
+
+        Raises:
+            SynthesisFailed: it is used up.
+        """
+        if self.budget.spent:
+            raise SynthesisFailed(f"the budget of {self.budget} was used up {done}", solution.status, self.seen)
+
+    def _fail(self, poses: Array, firsts: list[Array], last: NlpSolution) -> NlpSolution:
+        """Raise what a solution that did not converge comes to, with its geometry where that is the best seen."""
+        robot = self.robot_of(last)
+        if not self.budget.spent:
+            self.note(robot, worst_of(self.problem, robot, self.region, self.about, self.budget.left))
+        self.require_time(f"by the NLP over {len(poses)} poses", last)
+        short = "; ".join(f"{name} falls short by {by:.3g} of its size" for name, by in last.violations.items())
+        what = f"each of the NLP's {len(firsts)} starts over {len(poses)} poses did not converge"
+        raise SynthesisFailed(f"{what}{': ' + short if short else ''}", last.status, self.seen)
+
+
+def rounded(problem: Problem, values: Array) -> Array:
+    """(k,) the variables with so many digits, inside their bounds."""
+    low, high = problem.bounds()
+    return np.clip([float(f"{value:.{_DIGITS}g}") for value in values], low, high)
+
+
+def worst_of(
+    problem: Problem, robot: Mechanism, region: Region, about: int = DENSE, seconds: float = np.inf
+) -> dict[str, WorstPoses]:
+    """Worst poses of the objective and of each requirement, by margin, from a grid of about that many poses.
+
+    Args:
+        seconds: for all of them; see `WorstPoses.complete`.
+    """
+    budget, found = Budget(max(seconds, 1e-9)), {}
+    for k, margin in enumerate(problem.margins):
+        found[margin] = worst_poses(
+            robot,
+            region,
+            margin,
+            bounds=problem.fvi_bounds,
+            characteristic_length=problem.characteristic_length,
+            about=about,
+            seconds=budget.share(len(problem.margins) - k).seconds,
+        )
+    return found

@@ -1,0 +1,282 @@
+"""One max-min NLP over a fixed set of poses, in epigraph form, solved by IPOPT.
+
+Maximise t subject to: every component of the objective margin is at least t at every pose; every requirement holds at
+every pose with a little to spare, and every limb reaches; the geometry stays within its bounds and sums. Gradients and
+Hessians come from the mechanism's own expressions by automatic differentiation.
+
+Margins are measured by their own size, and variables by their bounds: the same problem in another size is the same.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from design.claims import reach_rows
+from design.requirement import Bounds, Requirement, SumLimit
+from design.sampling import WorstPoses
+from kinematics import Array, FviBounds, Mechanism
+
+_DECADES = 10.0  # a variable whose bounds are that far apart is counted in powers
+_TIE = 1e-7  # of the objective's size: of equal optima the one near the start, so that an exchange does not wander
+_SUM_SPARE = 1e-7  # by which a sum stays below its limit, relative to it: what rounding a result may take
+_REACH = "every limb reaches"
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is to be optimised, whatever the poses.
+
+    Attributes:
+        robot: the prototype; fields that are no variables keep its values.
+        objective: the margin whose worst value is maximised.
+        variables, requirements, sums: as named.
+        fvi_bounds, characteristic_length: what the FVI is measured with; the length stays while the geometry varies.
+        spare: how much more than its bound each requirement gets in the NLP, so that it holds between the poses too;
+            relative to the margin's own size, see `sizes`.
+    """
+
+    robot: Mechanism
+    objective: str
+    variables: tuple[Bounds, ...]
+    requirements: tuple[Requirement, ...]
+    sums: tuple[SumLimit, ...]
+    fvi_bounds: FviBounds
+    characteristic_length: float
+    spare: float = 1e-4
+
+    def bounds(self) -> tuple[Array, Array]:
+        """(k,) lowest and (k,) highest values of the variables."""
+        return np.array([v.low for v in self.variables]), np.array([v.high for v in self.variables])
+
+    def from_unit(self, unit: Any) -> list[Any]:
+        """k variables from numbers or symbols (k,) in [0, 1]: powers between bounds that are decades apart."""
+        pairs = zip(*self.bounds(), strict=True)
+        return [
+            low * (high / low) ** u if _in_powers(low, high) else low + (high - low) * u
+            for (low, high), u in zip(pairs, _items(unit), strict=True)
+        ]
+
+    def to_unit(self, values: Array) -> Array:
+        """(k,) the inverse of `from_unit`, held in [0, 1]."""
+        pairs = zip(*self.bounds(), strict=True)
+        found = [
+            math.log(max(v, low) / low) / math.log(high / low) if _in_powers(low, high) else (v - low) / (high - low)
+            for (low, high), v in zip(pairs, values, strict=True)
+        ]
+        return np.clip(found, 0.0, 1.0)
+
+    @property
+    def margins(self) -> tuple[str, ...]:
+        """The objective and what is required, each once."""
+        return tuple(dict.fromkeys([self.objective, *(r.margin for r in self.requirements)]))
+
+    def sizes(self, robot: Mechanism, poses: Array) -> dict[str, float]:
+        """By margin, the largest finite modulus that a robot has at the poses (p, n); 1 where it has none but 0."""
+        found = {}
+        for margin in self.margins:
+            values = np.abs(robot.margin(margin, poses, self.fvi_bounds, self.characteristic_length))
+            found[margin] = float(values[np.isfinite(values)].max(initial=0.0)) or 1.0
+        return found
+
+    def starts(self) -> dict[str, int]:
+        """Where each field's first number stands in the geometry's vector."""
+        sizes = self.robot.geometry.sizes()
+        firsts = np.cumsum([0, *sizes.values()])[:-1]
+        return {name: int(first) for name, first in zip(sizes, firsts, strict=True)}
+
+    def places(self) -> list[int]:
+        """Where each variable stands in the geometry's vector."""
+        starts = self.starts()
+        return [starts[v.field] + v.item for v in self.variables]
+
+    def summed(self, limit: SumLimit) -> list[list[int]]:
+        """Places whose sum is limited, one list for each entry of the fields; a plain number counts in every one."""
+        starts, sizes = self.starts(), self.robot.geometry.sizes()
+        entries = range(max(sizes[f] for f in limit.fields))
+        return [[starts[f] + (k if sizes[f] > 1 else 0) for f in limit.fields] for k in entries]
+
+    def allows(self, robot: Mechanism) -> bool:
+        """Whether a robot's variables are within their bounds and its sums within their limits."""
+        vector, (low, high) = robot.geometry.vector(), self.bounds()
+        values = vector[self.places()]
+        sums = (vector[places].sum() <= limit.at_most for limit in self.sums for places in self.summed(limit))
+        return bool((low <= values).all() and (values <= high).all() and all(sums))
+
+    def robot_with(self, values: Array) -> Mechanism:
+        """The robot with the variables at these values (k,)."""
+        vector = self.robot.geometry.vector()
+        vector[self.places()] = values
+        geometry = self.robot.Geometry.from_vector(vector)
+        return self.robot.with_geometry(geometry)
+
+
+@dataclass(frozen=True)
+class NlpSolution:
+    """What IPOPT returned for one set of poses.
+
+    Attributes:
+        values: (k,) the variables.
+        objective: t, the worst objective over the poses.
+        status: IPOPT's own words; `converged` only where they mean an optimum.
+        violations: by how much each requirement or sum falls short at the returned point, the largest first; empty when
+            all hold.
+        iterations: of the interior-point method.
+        seconds: wall-clock time of the solve.
+    """
+
+    values: Array
+    objective: float
+    status: str
+    converged: bool
+    violations: dict[str, float]
+    iterations: int
+    seconds: float
+
+
+def solve(
+    problem: Problem, poses: Array, start: Array, sizes: Mapping[str, float] | None = None, seconds: float = math.inf
+) -> NlpSolution:
+    """Solve over the poses (p, n) from a start (k,).
+
+    Args:
+        sizes: of the margins, see `Problem.sizes`; by default those of the start at the poses.
+        seconds: the solver stops after so many, without having converged.
+    """
+    started = time.perf_counter()
+    if sizes is None:
+        sizes = problem.sizes(problem.robot_with(start), poses)
+    unit, t = ca.MX.sym("unit", len(start)), ca.MX.sym("t")
+    geometry = ca.MX(problem.robot.geometry.vector())
+    for place, value in zip(problem.places(), problem.from_unit(unit), strict=True):
+        geometry[place] = value
+    rows = {
+        f"{r.margin} >= {r.at_least:g}": _margin(problem, r.margin, poses, geometry, sizes, r.at_least) - problem.spare
+        for r in problem.requirements
+    }
+    rows |= {str(limit): _room_of_sum(problem, limit, geometry) for limit in problem.sums}
+    objective = _margin(problem, problem.objective, poses, geometry, sizes)
+    if (reach := _reach(problem, poses, geometry)).numel():
+        rows[_REACH] = reach
+    constraints = ca.vertcat(objective - t, *rows.values())
+    first = problem.to_unit(start)
+    nlp: dict[str, Any] = {"x": ca.vertcat(unit, t), "f": -t + _TIE * ca.sumsqr(unit - first), "g": constraints}
+    lowest = float(np.nanmin(np.array(ca.Function("objective", [unit], [objective])(first)), initial=1.0))
+    solver = ca.nlpsol("synthesis", "ipopt", nlp, _options(seconds))
+    answer = solver(
+        x0=np.append(first, lowest),
+        lbx=np.append(0 * first, -np.inf),
+        ubx=np.append(0 * first + 1, np.inf),
+        lbg=0.0,
+        ubg=np.inf,
+    )
+    stats, x = solver.stats(), np.array(answer["x"]).ravel()
+    return NlpSolution(
+        values=np.array(problem.from_unit(x[:-1])),
+        objective=float(x[-1]) * sizes[problem.objective],
+        status=stats["return_status"],
+        converged=stats["return_status"] == "Solve_Succeeded",
+        violations=_violations(rows, np.array(answer["g"]).ravel()[objective.shape[0] :]),
+        iterations=int(stats["iter_count"]),
+        seconds=time.perf_counter() - started,
+    )
+
+
+def _options(seconds: float) -> dict[str, Any]:
+    return {
+        "print_time": False,
+        "error_on_fail": False,
+        "show_eval_warnings": False,  # the line search may try what cannot reach; IPOPT then shortens its step
+        "ipopt": {
+            "print_level": 0,
+            "sb": "yes",
+            "tol": 1e-9,
+            "max_iter": 400,
+            "mu_strategy": "adaptive",
+            "max_wall_time": min(max(seconds, 1e-3), 1e6),
+        },
+    }
+
+
+def _in_powers(low: float, high: float) -> bool:
+    return low > 0.0 and high >= _DECADES * low
+
+
+def _items(vector: Any) -> list[Any]:
+    """Its entries, of an array or of symbols."""
+    return ca.vertsplit(vector) if isinstance(vector, ca.MX) else list(vector)
+
+
+def _margin(
+    problem: Problem, name: str, poses: Array, geometry: ca.MX, sizes: Mapping[str, float], bound: float = 0.0
+) -> ca.MX:
+    """All components of a margin less a bound at all poses, over the margin's size."""
+    components = problem.robot.margin_components(name, problem.fvi_bounds, problem.characteristic_length)
+    return _mapped(problem, (components - bound) / sizes[name], poses, geometry)
+
+
+def _reach(problem: Problem, poses: Array, geometry: ca.MX) -> ca.MX:
+    """The reach of those limbs that no margin of the problem needs, over the sum of the geometry's numbers."""
+    model, measured = problem.robot.model(), (problem.fvi_bounds, problem.characteristic_length)
+    needed = ca.vertcat(*(problem.robot.margin_components(name, *measured) for name in problem.margins))
+    rows = reach_rows(problem.robot, needed)
+    return _mapped(problem, rows / ca.sum1(ca.fabs(model.geometry)), poses, geometry)
+
+
+def _mapped(problem: Problem, expressions: ca.SX, poses: Array, geometry: ca.MX) -> ca.MX:
+    """Expressions in a pose and the geometry at all poses, as one column."""
+    model = problem.robot.model()
+    function = ca.Function("rows", [model.pose, model.geometry], [ca.cse(ca.densify(expressions))])
+    return ca.vec(function.map(len(poses))(poses.T, ca.repmat(geometry, 1, len(poses))))
+
+
+def _violations(rows: dict[str, ca.MX], values: Array) -> dict[str, float]:
+    """Named shortfalls beyond the solver's tolerance; NaN (out of reach) counts as infinite."""
+    starts = np.cumsum([row.shape[0] for row in rows.values()])[:-1]
+    lowest = [np.nan_to_num(part, nan=-np.inf).min() for part in np.split(values, starts)] if rows else []
+    short = {name: float(-low) for name, low in zip(rows, lowest, strict=True) if low < -1e-6}
+    return dict(sorted(short.items(), key=lambda item: -item[1]))
+
+
+def _room_of_sum(problem: Problem, limit: SumLimit, geometry: ca.MX) -> ca.MX:
+    """Of each entry's sum, over the limit."""
+    size = abs(limit.at_most) or 1.0
+    totals = [sum((geometry[p] for p in places), ca.MX(0)) for places in problem.summed(limit)]
+    return ca.vertcat(*((limit.at_most - total) / size - _SUM_SPARE for total in totals))
+
+
+def active_sets(
+    problem: Problem, robot: Mechanism, worst: Mapping[str, WorstPoses], closeness: float = 1e-3
+) -> list[str]:
+    """Which bounds, sums and requirements hold the optimum back, in words.
+
+    Args:
+        worst: of each requirement's margin.
+        closeness: relative, to the variable's range, to the sum's limit, or to the margin's size.
+    """
+    found = []
+    vector = robot.geometry.vector()
+    sizes = robot.geometry.sizes()
+    for bound, unit in zip(problem.variables, problem.to_unit(vector[problem.places()]), strict=True):
+        item = f"[{bound.item}]" if sizes[bound.field] > 1 else ""
+        found += [
+            f"{bound.field}{item} at its {side} bound {edge:g}"
+            for side, edge, at in (("lower", bound.low, 0.0), ("upper", bound.high, 1.0))
+            if abs(unit - at) <= closeness
+        ]
+    for limit in problem.sums:
+        total = max(vector[places].sum() for places in problem.summed(limit))
+        if total >= limit.at_most - closeness * abs(limit.at_most):
+            found.append(f"{' + '.join(limit.fields)} at its upper bound {limit.at_most:g}")
+    for requirement in problem.requirements:
+        near = worst[requirement.margin]
+        size = max(abs(requirement.at_least), np.nan_to_num(near.typical))
+        if near.value <= requirement.at_least + closeness * size:
+            found.append(f"{requirement.margin} at its lower bound {requirement.at_least:g}")
+    return found

@@ -1,0 +1,67 @@
+"""Where a synthesis starts: geometries within the bounds that reach the region."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from design.synthesis.errors import SynthesisFailed
+from design.synthesis.nlp import Problem
+from kinematics import Array, InvalidGeometry, Mechanism, UnreachablePose
+
+_ATTEMPTS = 200  # geometries drawn for each wanted start
+
+
+def require_possible_sums(problem: Problem) -> None:
+    """Check that each sum can hold.
+
+    Raises:
+        SynthesisFailed: its variables' lower bounds alone are too much.
+    """
+    lowest = problem.robot.geometry.vector()
+    lowest[problem.places()] = problem.bounds()[0]
+    for limit in problem.sums:
+        least = max(float(lowest[places].sum()) for places in problem.summed(limit))
+        if least > limit.at_most:
+            raise SynthesisFailed(
+                f"{limit} cannot hold: with every variable at its lower bound it is {least:g}", "not started"
+            )
+
+
+def reaching_starts(problem: Problem, poses: Array, seed: int, count: int) -> list[Array]:
+    """Variables of geometries that reach every pose, the prototype's first; the others would start IPOPT on NaN.
+
+    Raises:
+        SynthesisFailed: none of many reaches them all; the one that comes nearest is described.
+    """
+    low, high = problem.bounds()
+    rng, tries = np.random.default_rng(seed), _ATTEMPTS * count
+    found: list[Array] = []
+    nearest: Mechanism | None = None
+    shortest, refusal = -np.inf, ""
+    prototype = np.clip(problem.robot.geometry.vector()[problem.places()], low, high)
+    for attempt in range(tries):
+        values = prototype if attempt == 0 else np.array(problem.from_unit(rng.random(len(low))))
+        try:
+            robot = problem.robot_with(values)
+        except InvalidGeometry as error:
+            refusal = str(error)
+            continue
+        margin = float(np.nan_to_num(robot.margin("reach", poses), nan=-np.inf).min())
+        if margin > 0.0:
+            found.append(values)
+        elif nearest is None or margin > shortest:
+            nearest, shortest = robot, margin
+        if len(found) == count:
+            break
+    if found:
+        return found
+    if nearest is None:
+        raise SynthesisFailed(
+            f"none of {tries} draws within the bounds is a geometry; the last: {refusal}", "not started"
+        )
+    try:
+        nearest.require_reachable(poses)
+    except UnreachablePose as error:
+        refusal = str(error)
+    what = f"none of {tries} geometries within the bounds reaches the region"
+    raise SynthesisFailed(f"{what}; the nearest: {refusal or 'on the very edge of reach'}", "not started")

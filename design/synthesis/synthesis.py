@@ -1,0 +1,139 @@
+"""Optimal geometry by exchange: solve on few poses, look everywhere, add the worst poses found, solve again.
+
+An optimum from a fixed coarse sample collapses between its poses; here the sample grows at the poses where the last
+answer was worst, until a dense search with descents agrees with the NLP. Only such an answer is returned.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from design.budget import Budget
+from design.region import Region
+from design.sampling import DENSE, WorstPoses
+from design.synthesis.errors import SynthesisFailed
+from design.synthesis.exchange import Candidate, Exchange, Progress, Round, worst_of
+from design.synthesis.nlp import NlpSolution, Problem
+from design.synthesis.starts import reaching_starts, require_possible_sums
+from kinematics import Array, Mechanism, positive, whole
+
+SECONDS = 600.0
+
+
+@dataclass(frozen=True)
+class Synthesis:
+    """An optimum that stood the dense search.
+
+    Attributes:
+        robot: the mechanism with the optimal geometry.
+        before, after: worst poses of the objective and of each requirement, by margin: prototype and optimum.
+        rounds: the exchanges.
+        status: the solver's last word.
+        sampled: poses of each dense grid.
+    """
+
+    robot: Mechanism
+    before: dict[str, WorstPoses]
+    after: dict[str, WorstPoses]
+    rounds: list[Round]
+    status: str
+    sampled: int
+
+
+def synthesise(
+    problem: Problem,
+    region: Region,
+    *,
+    seed: int = 0,
+    starts: int = 3,
+    about: int = DENSE,
+    max_rounds: int = 20,
+    tolerance: float = 1e-5,
+    seconds: float = SECONDS,
+    progress: Progress = lambda _: None,
+) -> Synthesis:
+    """Maximise the worst objective over the region.
+
+    Args:
+        problem: variables, requirements and what the FVI is measured with.
+        region: the workspace.
+        seed, starts: the prototype and `starts - 1` random geometries start the first NLP; the best answer goes on.
+        about: size of the dense grids.
+        max_rounds: exchanges before giving up.
+        tolerance: difference between the NLP's promise and the dense search at which they agree, relative to the
+            objective's size.
+        seconds: wall-clock time before giving up.
+        progress: told a line of text at each step.
+
+    Raises:
+        SynthesisFailed: no start converged, the exchange did not settle, or the time was used up; with the best
+            geometry seen.
+        InvalidRegion, InvalidValue: the region is not the robot's, or a number means nothing.
+    """
+    tolerance, starts = positive("tolerance", tolerance), whole("starts", starts, 1)
+    rounds = whole("max_rounds", max_rounds, 1)
+    exchange = Exchange(problem, region, about, Budget(seconds), progress)
+    region.check(problem.robot.pose_names)
+    require_possible_sums(problem)
+    before = worst_of(problem, problem.robot, region, about, exchange.budget.left)
+    if problem.allows(problem.robot):
+        exchange.note(problem.robot, before)
+    poses = region.spread(problem.robot.pose_names)
+    firsts = reaching_starts(problem, poses, seed, starts)
+    return _exchanged(exchange, before, poses, firsts, rounds, tolerance)
+
+
+def _exchanged(
+    exchange: Exchange,
+    before: dict[str, WorstPoses],
+    poses: Array,
+    firsts: list[Array],
+    most_rounds: int,
+    tolerance: float,
+) -> Synthesis:
+    """All rounds, from the poses (p, n) of the first one."""
+    problem = exchange.problem
+    sizes = problem.sizes(problem.robot_with(firsts[0]), poses)
+    solution = exchange.best_of(poses, firsts, sizes)
+    rounds: list[Round] = []
+    while len(rounds) < most_rounds:
+        robot = exchange.robot_of(solution)
+        after = worst_of(problem, robot, exchange.region, exchange.about, exchange.budget.left)
+        found = exchange.note(robot, after)
+        rounds.append(_round(solution, found, len(poses)))
+        exchange.progress(f"round {len(rounds)}: {rounds[-1]}")
+        slack = tolerance * abs(solution.objective)
+        settled = found.objective >= solution.objective - slack and found.shortfall <= 0.0
+        better = exchange.better_than(found, slack)
+        if settled and better is None and all(worst.complete for worst in after.values()):
+            return Synthesis(robot, before, after, rounds, solution.status, after[problem.objective].sampled)
+        exchange.require_time(f"after {len(rounds)} rounds, the last one: {rounds[-1]}", solution)
+        poses = np.concatenate([poses, *(_offenders(problem, solution, sizes, *item) for item in after.items())])
+        nearest = better.robot.geometry.vector()[problem.places()] if settled and better else solution.values
+        solution = exchange.first_of(poses, [nearest, *firsts], sizes)
+    raise SynthesisFailed(f"the exchange did not settle; its last round: {rounds[-1]}", solution.status, exchange.seen)
+
+
+def _round(solution: NlpSolution, found: Candidate, poses: int) -> Round:
+    return Round(
+        poses=poses,
+        promised=solution.objective,
+        found=found.objective,
+        shortfall=found.shortfall,
+        iterations=solution.iterations,
+        seconds=solution.seconds,
+    )
+
+
+def _offenders(
+    problem: Problem, solution: NlpSolution, sizes: Mapping[str, float], margin: str, worst: WorstPoses
+) -> Array:
+    """(k, n) poses at which the last answer does worse than it promised."""
+    spare = problem.spare * sizes[margin]
+    floors = [r.at_least + spare for r in problem.requirements if r.margin == margin]
+    if margin == problem.objective:
+        floors.append(solution.objective)
+    return worst.poses[worst.values < max(floors)]

@@ -1,0 +1,21 @@
+"""Expressions evaluated over many poses at once, in numbers and in intervals."""
+
+from kinematics.evaluation.block_interpreter import bulk, evaluate
+from kinematics.evaluation.block_program import BlockProgram
+from kinematics.evaluation.box_program import BoxProgram
+from kinematics.evaluation.interval_interpreter import enclose
+from kinematics.evaluation.program import Op, Program, replay
+from kinematics.evaluation.threads import CORES, over_spans
+
+__all__ = [
+    "CORES",
+    "BlockProgram",
+    "BoxProgram",
+    "Op",
+    "Program",
+    "bulk",
+    "enclose",
+    "evaluate",
+    "over_spans",
+    "replay",
+]

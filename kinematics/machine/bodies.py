@@ -1,0 +1,111 @@
+"""The rigid-body model of a mechanism: particles, rotors and rods at points of its joints and pose."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import ClassVar, NamedTuple
+
+import casadi as ca
+import numpy as np
+
+from kinematics.errors import InvalidValue
+from kinematics.machine.drive_train import DriveTrain
+from kinematics.machine.geometry import frozen, numbers_of
+
+UNIFORM = 2 / 3  # the `rod_middle` of a thin uniform rod: with 1/6 at each end, its mass, centre and inertia
+
+
+@dataclass(frozen=True)
+class InertiaRecord:
+    """Base of every mechanism's `Inertia`: numbers, or tuples of as many as the default has, finite and not negative.
+
+    Attributes:
+        rod_middle: share of each rod's mass that sits at its middle, the rest half at each end. 0 splits it between
+            the ends, as is usual; `UNIFORM` is a thin uniform rod, exactly; 1 - 4 I / (m l^2) is any other symmetric
+            one, of inertia I about its middle.
+        drive_train: gear, motor and friction of the actuators.
+
+    Raises:
+        InvalidValue: naming the field.
+    """
+
+    dimensions: ClassVar[Mapping[str, str]] = {}  # as in a geometry, of fields that a file may give in mm
+    rod_middle: float = field(default=0.0, kw_only=True)
+    drive_train: DriveTrain = field(default=DriveTrain(), kw_only=True)
+
+    def __post_init__(self) -> None:
+        for f in fields(self):
+            value = getattr(self, f.name)
+            if f.name == "drive_train":
+                if not isinstance(value, DriveTrain):
+                    raise InvalidValue(f"{type(self).__name__} drive_train", value, "a DriveTrain")
+                continue
+            array, shape = numbers_of(value), np.shape(f.default)  # type: ignore[arg-type]
+            if array is None or array.shape != shape or not np.isfinite(array).all() or np.any(array < 0.0):
+                count = f"{shape[0]} numbers, " if shape else ""
+                raise InvalidValue(f"{type(self).__name__} {f.name}", value, f"{count}finite and >= 0")
+            object.__setattr__(self, f.name, frozen(array))
+        if self.rod_middle > 1.0:
+            raise InvalidValue(f"{type(self).__name__} rod_middle", self.rod_middle, "a share, at most 1")
+
+    def check(self, count: int) -> None:
+        """Check that every drive's data suits `count` actuators.
+
+        Raises:
+            InvalidValue: naming the field.
+        """
+        self.drive_train.check(count)
+
+
+class Particle(NamedTuple):
+    """A mass [kg] at a point (3,) [m] of a link."""
+
+    link: str
+    mass: float | ca.SX
+    point: ca.SX
+
+
+class Rotor(NamedTuple):
+    """An inertia [kg m^2] and the angle [rad] it turns by, a linear function of joints and pose.
+
+    Its axis keeps its direction. A mass that only slides is one too: its mass [kg] and how far it has slid [m].
+    """
+
+    inertia: float | ca.SX
+    angle: ca.SX
+
+
+class Rod(NamedTuple):
+    """A rod of constant length, or a pair that moves as one, between points (3,) of two links; mass [kg]."""
+
+    mass: float
+    links: tuple[str, str]
+    start: ca.SX
+    end: ca.SX
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """A mechanism's masses; `rod_middle` as in `InertiaRecord`."""
+
+    rod_middle: float
+    particles: list[Particle] = field(default_factory=list)
+    rotors: list[Rotor] = field(default_factory=list)
+    rods: list[Rod] = field(default_factory=list)
+
+    def all_particles(self) -> list[Particle]:
+        """The particles, and each rod as two or three: its ends on its links, its middle on a link of its own."""
+        result = list(self.particles)
+        for k, rod in enumerate(self.rods):
+            near, middle, far = self.rod_particles(k)
+            result += [near._replace(link=rod.links[0]), far._replace(link=rod.links[1])]
+            result += [middle] if self.rod_middle else []
+        return result
+
+    def rod_particles(self, k: int) -> list[Particle]:
+        """Start, middle and end of a rod, as particles of the link `rod`, counted from 1."""
+        rod, link, end = self.rods[k], f"rod {k + 1}", (1 - self.rod_middle) / 2
+        points = (rod.start, (rod.start + rod.end) / 2, rod.end)
+        shares = (end, self.rod_middle, end)
+        return [Particle(link, share * rod.mass, point) for share, point in zip(shares, points, strict=True)]

@@ -1,0 +1,72 @@
+"""Between motor and actuator: gear, motor inertia, friction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from kinematics.errors import InvalidValue
+from kinematics.machine.geometry import frozen, numbers_of
+
+PerActuator = float | tuple[float, ...]
+REST = 1e-9  # [rad/s or m/s], above what rounding leaves of a speed of 0
+
+
+@dataclass(frozen=True)
+class DriveTrain:
+    """What stands behind each actuator; a number for all actuators, or one each. SI units.
+
+    Torques, speeds and limits everywhere are the actuator's, the gear's output: a motor turns `gear_ratio` times as
+    fast and bears the torque over `gear_ratio`. Friction is the actuator's too: coulomb sign(speed) + viscous speed,
+    and a drive at rest, slower than `REST`, bears no Coulomb friction.
+
+    Attributes:
+        gear_ratio: motor [rad] per actuator [rad or m].
+        motor_inertia: of each motor about its own axis; an actuator moves `gear_ratio`^2 times as much [kg m^2].
+        coulomb: [N m] or [N].
+        viscous: [N m s/rad] or [N s/m].
+
+    Raises:
+        InvalidValue: a value that is not finite or negative, or a gear ratio of 0.
+    """
+
+    gear_ratio: PerActuator = 1.0
+    motor_inertia: PerActuator = 0.0
+    coulomb: PerActuator = 0.0
+    viscous: PerActuator = 0.0
+
+    def __post_init__(self) -> None:
+        for f in fields(self):
+            value = getattr(self, f.name)
+            numbers = numbers_of(value)
+            if numbers is None or numbers.ndim > 1 or not np.isfinite(numbers).all() or np.any(numbers < 0.0):
+                raise InvalidValue(f"DriveTrain {f.name}", value, "finite and >= 0")
+            object.__setattr__(self, f.name, frozen(numbers))
+        if np.any(np.asarray(self.gear_ratio) == 0.0):
+            raise InvalidValue("DriveTrain gear_ratio", self.gear_ratio, "> 0")
+
+    def check(self, count: int) -> None:
+        """Check that every field suits `count` actuators.
+
+        Raises:
+            InvalidValue: naming the field.
+        """
+        for f in fields(self):
+            self.of_actuators(f.name, count)
+
+    def friction(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(..., m) actuator speeds [rad/s or m/s] -> Coulomb and viscous friction, (..., m) each [N m or N]."""
+        coulomb, viscous = (self.of_actuators(name, speed.shape[-1]) for name in ("coulomb", "viscous"))
+        return coulomb * np.sign(speed) * (np.abs(speed) > REST), viscous * speed
+
+    def of_actuators(self, name: str, count: int) -> np.ndarray:
+        """(count,) one field.
+
+        Raises:
+            InvalidValue: it is given for another number of actuators.
+        """
+        value = getattr(self, name)
+        if np.ndim(value) and np.shape(value) != (count,):
+            raise InvalidValue(f"DriveTrain {name}", value, f"one number or {count}, one an actuator")
+        return np.broadcast_to(np.asarray(value, dtype=float), (count,))

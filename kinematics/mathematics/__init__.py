@@ -1,0 +1,34 @@
+"""Mathematics that knows no robot: real roots, path tracking, symbolic linear algebra, distances, orientations."""
+
+from kinematics.mathematics.distinct_solutions import distinct, gaps, working_first
+from kinematics.mathematics.double_roots import not_below_zero
+from kinematics.mathematics.homotopy import refine, track
+from kinematics.mathematics.orientation import angles, rotation, turn
+from kinematics.mathematics.polynomial_product import product
+from kinematics.mathematics.polynomial_roots import real_roots
+from kinematics.mathematics.rigid_displacements import displacement, leg_quadrics, study_quadric
+from kinematics.mathematics.segment_distance import segment_distances, segment_gap_symbolic
+from kinematics.mathematics.symbolic_linear_algebra import Minors, adjugate, determinant, volume
+
+__all__ = [
+    "Minors",
+    "adjugate",
+    "angles",
+    "determinant",
+    "displacement",
+    "distinct",
+    "gaps",
+    "leg_quadrics",
+    "not_below_zero",
+    "product",
+    "real_roots",
+    "refine",
+    "rotation",
+    "segment_distances",
+    "segment_gap_symbolic",
+    "study_quadric",
+    "track",
+    "turn",
+    "volume",
+    "working_first",
+]

@@ -1,0 +1,173 @@
+"""The forward model near a known pose: followed along a straight line of the joints, by Newton's method in small steps.
+
+The joints go from those of the known pose to the ones that are asked for, and the pose follows without passing a
+singularity: so it stays in its assembly mode. A step counts only where Newton's method contracts at once; else it is
+halved. All poses are followed side by side, each with a step of its own.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kinematics.arrays import Array, together
+from kinematics.evaluation import evaluate
+from kinematics.mathematics import determinant
+
+if TYPE_CHECKING:
+    from kinematics.model.mechanism import Mechanism
+    from kinematics.model.programs import Build
+    from kinematics.model.symbolic_model import Model
+
+# Sizes of a step of the pose: its angle [rad], or its length over the robot's size, whichever is larger.
+_LONGEST = 0.25
+_CORRECTED = 0.15  # the most that the first step of Newton's method may be, over the step that it corrects
+_CONTRACTS = 0.5  # the most that a step of Newton's method may be, over the one before
+_NEWTON = 8
+_ROUGH = 1e-3  # a step of Newton's method that ends a best fit on the way
+_ROUNDING = 1e-12
+_CLOSED = 1e-11  # by what displacement a closure may be missed, in the same sizes
+_SHORTEST = 1e-6  # share of the way; where a shorter step is needed, a singularity is ahead
+_MOST = 400  # steps of any pose
+_LAST = 0.02  # share of the way within which a way that gets stuck may end on a singularity
+_HALVINGS = 60
+
+
+class State(NamedTuple):
+    """Of k poses: how far the closure is open (k, m), J_x (k, m, n), J_q's diagonal (k, m), and J_x's determinant (k,).
+
+    With more joints than freedoms it is the determinant of J_x^T J_x.
+    """
+
+    gap: Array
+    j_x: Array
+    j_q: Array
+    determinant: Array
+
+
+def continued(robot: Mechanism, joints: Array, near: Array) -> Array:
+    """The poses with these joints that are reached from known poses without a singularity on the way.
+
+    Args:
+        joints: (..., m); an angle may be any number of turns off.
+        near: (n,) or (..., n) known poses, in any assembly mode of the working mode's limbs.
+
+    Returns:
+        (..., n); NaN where the known pose is out of reach, or where the way from it meets a singularity.
+    """
+    start, target = together(near, joints)
+    lead = start.shape[:-1]
+    pose, target = start.reshape(-1, start.shape[-1]).copy(), target.reshape(-1, target.shape[-1])
+    first = robot.inverse(pose)
+    way = np.where(np.isfinite(target), target, np.nan) - first
+    turns = [k for k, unit in enumerate(robot.joint_units) if unit == "rad"]
+    way[:, turns] -= 2 * np.pi * np.round(way[:, turns] / (2 * np.pi))
+    done = _followed(robot, pose, first, way)
+    stuck = np.flatnonzero((done < 1.0) & (done >= 1.0 - _LAST))
+    pose[stuck] = _at_double_root(robot, pose[stuck], first[stuck] + way[stuck])
+    pose[done < 1.0 - _LAST] = np.nan
+    return pose.reshape(*lead, pose.shape[-1])
+
+
+def _followed(robot: Mechanism, pose: Array, first: Array, way: Array) -> Array:
+    """Move poses (k, n) along in place; how far each came (k,), 1 at its end."""
+    done, step = np.zeros(len(pose)), np.ones(len(pose))
+    active = np.flatnonzero(np.isfinite(way).all(axis=1) & np.isfinite(pose).all(axis=1))
+    for _ in range(_MOST):
+        if not active.size:
+            break
+        q, along = first[active], way[active]
+        here = state_at(robot, pose[active], q + done[active, None] * along)
+        twist = _solved(here, here.j_q * along)
+        rate = _size(robot, twist)
+        with np.errstate(divide="ignore"):
+            share = np.minimum(np.minimum(step[active], 1.0 - done[active]), _LONGEST / rate)
+        reached = np.where(share >= 1.0 - done[active], 1.0, done[active] + share)
+        trial = robot.moved(pose[active], share[:, None] * twist)
+        trial, good = _closed(robot, trial, q + reached[:, None] * along, share * rate, here.determinant, reached)
+        moved = active[good]
+        pose[moved], done[moved] = trial[good], reached[good]
+        step[active] = np.where(good, 2.0 * share, 0.5 * share)
+        active = active[(done[active] < 1.0) & (step[active] > _SHORTEST) & np.isfinite(rate)]
+    return done
+
+
+def _at_double_root(robot: Mechanism, pose: Array, joints: Array) -> Array:
+    """(k, n) where a way that got stuck before its end does end, on a singularity; NaN where it does not.
+
+    There Newton's method halves its error in each step.
+    """
+    before = pose.copy()
+    for _ in range(_HALVINGS):
+        state = state_at(robot, pose, joints)
+        inverse = np.linalg.pinv(np.nan_to_num(state.j_x * robot.pose_units()), rcond=1e-9)
+        twist = np.einsum("kij,kj->ki", inverse, np.nan_to_num(state.gap)) * robot.pose_units()
+        size = _size(robot, twist)
+        pose = robot.moved(pose, twist * np.minimum(1.0, _LONGEST / np.maximum(size, 1e-300))[:, None])
+    moved = _size(robot, pose - before)
+    ends = (np.abs(robot.closure_gap(pose, joints)).max(axis=-1) <= 10 * _ROUNDING) & (moved <= _LONGEST)
+    return np.where(ends[:, None], pose, np.nan)
+
+
+def _closed(
+    robot: Mechanism, pose: Array, joints: Array, moved: Array, side: Array, reached: Array
+) -> tuple[Array, Array]:
+    """Poses (k, n) after Newton's method, and where it converged to a pose of the same side of the singularities.
+
+    Joints on the way have a pose only if they are as many as freedoms; else the best fit serves, roughly.
+    """
+    on_the_way = (reached < 1.0) & (joints.shape[1] > pose.shape[1])
+    enough = np.where(on_the_way, _ROUGH, _ROUNDING)
+    before = np.maximum(moved * _CORRECTED / _CONTRACTS, 1e3 * _ROUNDING)
+    good, rounded = np.ones(len(pose), dtype=bool), np.zeros(len(pose), dtype=bool)
+    for _ in range(_NEWTON):
+        state = state_at(robot, pose, joints)
+        twist = _solved(state, state.gap)
+        size = _size(robot, twist)
+        rounded |= size <= enough
+        good &= rounded | (size <= _CONTRACTS * before)
+        before = size
+        pose = robot.moved(pose, np.where(good[:, None], twist, 0.0))
+        if (rounded | ~good).all():
+            break
+    closes = on_the_way | (np.abs(robot.closure_gap(pose, joints)).max(axis=-1) <= _CLOSED)
+    return pose, good & rounded & closes & (state_at(robot, pose, joints).determinant * side > 0.0)
+
+
+def polished(robot: Mechanism, poses: Array, joints: Array, steps: int) -> Array:
+    """Poses (k, n) near to those with joints (k, m), after Newton's method; NaN where the closure does not close."""
+    for _ in range(steps):
+        state = state_at(robot, poses, joints)
+        poses = robot.moved(poses, np.nan_to_num(_solved(state, state.gap)))
+    closes = np.abs(robot.closure_gap(poses, joints)).max(axis=-1) <= _CLOSED
+    return np.where(closes[:, None], poses, np.nan)
+
+
+def state_at(robot: Mechanism, pose: Array, joints: Array) -> State:
+    """At poses (k, n) with joints (k, m)."""
+    gap, j_x, j_q, det = evaluate(robot.program(_build), pose, joints)
+    return State(gap, j_x, j_q, det[:, 0])
+
+
+def _build(robot: Mechanism, model: Model) -> Build:  # noqa: ARG001
+    m, n = model.j_x.shape
+    det = determinant(model.j_x) if m == n else determinant(model.j_x.T @ model.j_x)
+    return [model.pose, model.joints], [model.closure, model.j_x, model.j_q, det]
+
+
+def _solved(state: State, right: Array) -> Array:
+    """(k, n) twists t with J_x t = right (k, m), in the sense of least squares; NaN on a singularity."""
+    matrix, n = state.j_x, state.j_x.shape[-1]
+    if matrix.shape[-2] != n:
+        right = np.einsum("kij,ki->kj", matrix, right)
+        matrix = np.einsum("kij,kil->kjl", matrix, matrix)
+    sound = (np.abs(state.determinant) > 0.0) & np.isfinite(matrix).all(axis=(-2, -1)) & np.isfinite(right).all(axis=-1)
+    safe = np.where(sound[:, None, None], matrix, np.eye(n))
+    return np.where(sound[:, None], np.linalg.solve(safe, np.nan_to_num(right)[..., None])[..., 0], np.nan)
+
+
+def _size(robot: Mechanism, twist: Array) -> Array:
+    """(k,) the largest angle [rad] or length over the robot's size."""
+    largest: Array = np.abs(twist / robot.pose_units()).max(axis=-1)
+    return largest

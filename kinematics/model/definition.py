@@ -1,0 +1,142 @@
+"""What a mechanism writes: its data, its closure and its closed forms. `Mechanism` derives the rest.
+
+A new mechanism is one file with these hooks, and its name in `MECHANISMS`; docs/new_mechanism.md walks through them.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import casadi as ca
+
+from kinematics.arrays import Array
+from kinematics.machine import Bodies, GeometryRecord, InertiaRecord, JointRanges, PassiveJoint
+from kinematics.model.indices import FviBounds
+
+if TYPE_CHECKING:
+    from kinematics.model.working_mode import Mode
+
+
+class Definition(ABC):
+    """The hooks of a mechanism; `g` holds the geometry's fields by name, as numbers or symbols."""
+
+    Geometry: ClassVar[type[GeometryRecord]]
+    Inertia: ClassVar[type[InertiaRecord]]
+    Ranges: ClassVar[type[JointRanges]] = JointRanges  # a frozen dataclass of joint limits, with defaults
+    pose_names: ClassVar[tuple[str, ...]]
+    joint_names: ClassVar[tuple[str, ...]]
+    joint_units: ClassVar[tuple[str, ...]]  # rad or m
+    rotations: ClassVar[tuple[int, ...]]  # which pose coordinates are angles
+    counts_turns: ClassVar[bool] = False  # whether an angle a turn on is another pose, as on a screw
+    fvi_bounds: ClassVar[FviBounds]
+    mirrors: ClassVar[tuple[tuple[str, ...], ...]] = ()  # coordinates whose signs change together: a mirror image
+    margins: ClassVar[tuple[str, ...]] = ("reach", "joint_travel", "fvi", "J_q", "det_J_q", "det_J_x")
+
+    @staticmethod
+    @abstractmethod
+    def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(m,) loop closure, one row a limb."""
+
+    @staticmethod
+    @abstractmethod
+    def default_home(geometry: Any) -> tuple[float, ...]:
+        """(n,) a pose about in the middle of the workspace of a geometry of any size."""
+
+    @staticmethod
+    @abstractmethod
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace, mode: Mode) -> ca.SX:
+        """(m,) joints of a working mode, NaN where a limb cannot reach."""
+
+    @classmethod
+    def usual_branches(cls, home: Array, geometry: Any) -> tuple[int, ...]:  # noqa: ARG003
+        """(m,) the branch of each limb's inverse, +1 or -1, that is usual around a home (n,)."""
+        return (1,) * len(cls.joint_names)
+
+    @staticmethod
+    @abstractmethod
+    def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """How far each limb is from not reaching [m], one row a limb; negative where it cannot."""
+
+    @classmethod
+    def limb_roots(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """Numbers that are NaN where a limb cannot reach: the inverse model's roots where they are at hand."""
+        return ca.sqrt(cls.reach(pose, g))
+
+    @staticmethod
+    @abstractmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """What J_q's diagonal (m,) and det J_x are divided by, so that both lie in [-1, 1].
+
+        With m > n it is sqrt(det J_x^T J_x) that takes the determinant's place.
+        """
+
+    @abstractmethod
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
+        """The masses that move; `payload` [kg] sits at the tool."""
+
+    @staticmethod
+    @abstractmethod
+    def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
+        """Named polylines (3, k) that draw the mechanism: base, arms, rods, platform."""
+
+    def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:  # noqa: ARG002
+        """The joints at the rods' ends; where there are any, `Ranges` limits them and "passive_joint" is a margin."""
+        return []
+
+    def segment_pairs(self) -> list[tuple[ca.SX, ca.SX]]:
+        """Members (3, 2) at a pose that must not meet, ends in columns; with any, "clearance" [m] is a margin."""
+        return []
+
+    @classmethod
+    def drives(cls, g: SimpleNamespace) -> ca.SX:  # noqa: ARG003
+        """(m, m) constant C with actuators = C joints; the identity unless the drives couple joints."""
+        return ca.SX.eye(len(cls.joint_names))
+
+    @staticmethod
+    def joint_cosines_and_sines(
+        pose: ca.SX,  # noqa: ARG004
+        g: SimpleNamespace,  # noqa: ARG004
+        mode: Mode,  # noqa: ARG004
+    ) -> tuple[ca.SX, ca.SX] | None:
+        """(m,) cosines and (m,) sines of the joints at a pose, where the joints are revolute."""
+        return None
+
+    @staticmethod
+    def pose_rate_map(pose: ca.SX) -> ca.SX:
+        """(n, n) pose rates from the twist; the identity unless the pose holds Euler angles."""
+        return ca.SX.eye(pose.shape[0])
+
+    @classmethod
+    def closure_by_twist(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(m, n) derivative of the closure by the twist; to be replaced where Euler angles would spoil it."""
+        return ca.jacobian(cls.closure(pose, joints, g), pose) @ cls.pose_rate_map(pose)
+
+    @property
+    def actuator_names(self) -> tuple[str, ...]:
+        """What C joints is called; the joints themselves unless the drives couple them."""
+        return self.joint_names
+
+    @property
+    def actuator_units(self) -> tuple[str, ...]:
+        """Rad or m."""
+        return self.joint_units
+
+    @property
+    @abstractmethod
+    def characteristic_length(self) -> float:
+        """What makes a rotation a length [m]."""
+
+    @abstractmethod
+    def assembly_modes(self, joints: Array) -> Array:
+        """(m,) -> (k, n), every real pose with these joints."""
+
+    @abstractmethod
+    def working_forward(self, joints: Array) -> Array:
+        """(..., m) joints -> (..., n) pose in the assembly mode of home; a NaN row where no pose has these joints."""
+
+    @staticmethod
+    def moved(pose: Array, twist: Array) -> Array:
+        """(k, n) poses after small displacements (k, n); not a sum where the pose holds Euler angles."""
+        return pose + twist

@@ -1,0 +1,345 @@
+"""All that follows from a mechanism's definition, over arrays of poses."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from typing import Any, Self
+
+import casadi as ca
+import numpy as np
+
+from kinematics.arrays import Array, checked, together
+from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
+from kinematics.evaluation import BlockProgram, evaluate
+from kinematics.machine import GeometryRecord, InertiaRecord, Pair, PassiveJoint, joint_travel
+from kinematics.mathematics import segment_gap_symbolic, volume
+from kinematics.model import expressions
+from kinematics.model.continuation import continued
+from kinematics.model.definition import Definition
+from kinematics.model.indices import FviBounds, fvi_components, homogeneous
+from kinematics.model.programs import Write, program_of
+from kinematics.model.symbolic_model import Model, model_of
+from kinematics.model.working_mode import Mode, mode_at
+
+_SLICE = 8192  # poses whose matrices are in memory at once
+
+
+class Mechanism(Definition):
+    """A parallel mechanism with n freedoms and m actuated joints, one a limb.
+
+    Every public method takes poses (..., n) or joints (..., m) with any leading shape.
+    """
+
+    ranges: Any
+    home: Array
+    mode: Mode
+
+    def __init__(
+        self,
+        geometry: GeometryRecord | None = None,
+        inertia: InertiaRecord | None = None,
+        ranges: Any = None,
+        home: Sequence[float] | Array | None = None,
+        home_joints: Sequence[float] | Array | None = None,
+    ) -> None:
+        """A robot; each part has a default.
+
+        Args:
+            geometry, inertia, ranges: records of the mechanism's own kinds.
+            home: (n,) the pose that it works around, from which the working mode follows; about the middle of the
+                workspace by default.
+            home_joints: (m,) its joints there, which choose a branch of each limb's inverse, such as elbows in; by
+                default the usual branches.
+
+        Raises:
+            InvalidValue, InvalidShape: naming the part.
+        """
+        self.geometry = geometry if geometry is not None else self.Geometry()
+        if not isinstance(self.geometry, self.Geometry):
+            raise InvalidValue(f"{type(self).__name__} geometry", geometry, f"a {self.Geometry.__name__}")
+        self.inertia = inertia if inertia is not None else self.Inertia()
+        if not isinstance(self.inertia, self.Inertia):
+            raise InvalidValue(f"{type(self).__name__} inertia", inertia, f"a {self.Inertia.__name__}")
+        self.inertia.check(len(self.joint_names))
+        self.ranges = ranges if ranges is not None else self.Ranges()
+        if not isinstance(self.ranges, self.Ranges):
+            raise InvalidValue(f"{type(self).__name__} ranges", ranges, f"a {self.Ranges.__name__}")
+        self.ranges.check(len(self.joint_names))
+        joints = _vector(home_joints, "home_joints", self.joint_names)
+        self._given = _vector(home, "home", self.pose_names), joints
+        self.home = np.array(self._given[0] or self.default_home(self.geometry), dtype=float) + 0.0  # no -0
+        self.home.setflags(write=False)
+        self.mode = mode_at(self, np.array(joints) if joints else None)
+        self._identity = (type(self), self.geometry, self.inertia, self.ranges, tuple(self.home.tolist()), self.mode)
+        self._hash = hash(self._identity)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Mechanism) and self._identity == other._identity
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    def conditions(self) -> dict[str, Any]:
+        """Plain data that a margin depends on beside the geometry: the joint ranges and the working mode."""
+        return {"ranges": asdict(self.ranges), "mode": self.mode}
+
+    @property
+    def conditions_digest(self) -> str:
+        """SHA-256 of `conditions`, to tell which robot a proof was made for."""
+        return hashlib.sha256(json.dumps(self.conditions(), sort_keys=True).encode()).hexdigest()
+
+    def with_inertia(self, inertia: InertiaRecord) -> Self:
+        """The same robot with other masses and drives."""
+        return type(self)(self.geometry, inertia, self.ranges, *self._given)
+
+    def with_geometry(self, geometry: GeometryRecord) -> Self:
+        """The same robot with another geometry; a home that was given stays."""
+        return type(self)(geometry, self.inertia, self.ranges, *self._given)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.geometry})"
+
+    def model(self) -> Model:
+        """The symbolic model, shared by all robots of this class and working mode."""
+        return model_of(type(self), self.mode)
+
+    def cleared_j_x(self) -> tuple[ca.SX, ca.SX]:
+        """K (m, n) and k (m,) > 0 with J_x = diag(1 / k) K in the working mode; K without the divisors of its rows."""
+        model = self.model()
+        return model.j_x_at_pose, ca.SX.ones(model.j_x_at_pose.shape[0])
+
+    def inverse(self, pose: Array) -> Array:
+        """(..., n) -> (..., m) joints of the working mode; a NaN row where a limb cannot reach."""
+        return self._evaluate(expressions.inverse, pose)[0]
+
+    def forward(self, joints: Array, near: Array | None = None) -> Array:
+        """(..., m) -> (..., n) the pose with these joints; a NaN row where there is none.
+
+        Args:
+            joints: of the working mode's limbs [m or rad].
+            near: (n,) or (..., n) poses to continue from, each in the assembly mode that is wanted: the joints move
+                there on a straight line, without a singularity on the way. By default the assembly mode of `home`.
+        """
+        if near is None:
+            return self.working_forward(joints)
+        return continued(self, self._joints(joints), self._poses(near))
+
+    def closure_residual(self, pose: Array, joints: Array) -> Array:
+        """(..., n), (..., m) -> (..., m) the loop closure; zero when they belong together."""
+        pose, joints = self._poses(pose), self._joints(joints)
+        return evaluate(self.program(expressions.closure), *together(pose, joints))[0]
+
+    def closure_gap(self, pose: Array, joints: Array) -> Array:
+        """(..., n), (..., m) -> (..., m) by what displacement of the platform each limb's closure is missed, at least.
+
+        In radians, or in lengths over the robot's size.
+        """
+        return evaluate(self.program(expressions.closure_gap), *together(self._poses(pose), self._joints(joints)))[0]
+
+    def pose_units(self) -> Array:
+        """(n,) what makes a difference of poses small or large: the robot's size for a length [m], 1 for an angle."""
+        units = np.full(len(self.pose_names), self.geometry.size)
+        units[list(self.rotations)] = 1.0
+        return units
+
+    def apart(self, first: Array, second: Array) -> Array:
+        """(..., n), (..., n) -> (...,) the largest difference of poses: an angle, or a length over the robot's size."""
+        gap = self._poses(first) - self._poses(second)
+        turns = list(self.rotations)
+        if not self.counts_turns:
+            gap[..., turns] = 2 * np.sin(gap[..., turns] / 2)
+        largest: Array = np.abs(gap / self.pose_units()).max(axis=-1)
+        return largest
+
+    def jacobians(self, pose: Array, joints: Array | None = None) -> tuple[Array, Array]:
+        """J_q (..., m, m) and J_x (..., m, n), with J_q q' = J_x t; working mode, unless `joints` (..., m) say."""
+        if joints is None:
+            diagonal, j_x = self._evaluate(expressions.jacobians, pose)
+        else:
+            both = together(self._poses(pose), self._joints(joints))
+            diagonal, j_x = evaluate(self.program(expressions.jacobians_of_joints), *both, blank=True)
+        j_q = np.zeros((*diagonal.shape, diagonal.shape[-1]))
+        j_q[..., range(diagonal.shape[-1]), range(diagonal.shape[-1])] = diagonal
+        j_q[np.isnan(diagonal).any(axis=-1)] = np.nan
+        return j_q, j_x
+
+    def inverse_jacobian(self, pose: Array) -> Array:
+        """(..., m, n) J_m = J_q^-1 J_x, so that q' = J_m t; of the joints, see `actuator_jacobian`."""
+        return self._evaluate(expressions.inverse_jacobian, pose)[0]
+
+    def actuator_jacobian(self, pose: Array) -> Array:
+        """(..., m, n) C J_m: the rates of the actuators, which carry the limits, from the twist."""
+        return self._evaluate(expressions.actuator_jacobian, pose)[0]
+
+    def pose_rates(self, pose: Array) -> Array:
+        """(..., n, n) what takes a twist to the rates of the pose: the identity unless the pose holds Euler angles."""
+        return evaluate(self.program(expressions.pose_rates), self._poses(pose), blank=True)[0]
+
+    def isotropic(self, pose: Array, characteristic_length: float | None = None) -> tuple[Array, Array]:
+        """v_w (...,) and f_w (...,): worst speed and force for unit actuator speed and effort; Shayya et al. (40)."""
+        speed, force = self._evaluate(expressions.isotropic, pose, self._length(characteristic_length))
+        return speed[..., 0], force[..., 0]
+
+    def force_capability(self, pose: Array, characteristic_length: float | None = None) -> Array:
+        """(...,) largest force in every direction for unit actuator effort, over all shares of the efforts.
+
+        With m = n it is f_w; with m > n it is larger, as f_w admits minimum-norm efforts only.
+        """
+        return self._evaluate(expressions.force_capability, pose, self._length(characteristic_length))[0][..., 0]
+
+    def fvi(self, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None) -> Array:
+        """(...,) min(v_w / v_wl, f_w / f_wl); Shayya et al. (39). NaN where the pose is out of reach."""
+        return self.margin("fvi", pose, bounds, characteristic_length)
+
+    def condition_number(self, pose: Array, characteristic_length: float | None = None) -> Array:
+        """(...,) 2-norm condition number of J_mw at the actuators; inf on a singularity, NaN out of reach."""
+        length = self._length(characteristic_length)
+        pose = self._poses(pose)
+        flat = pose.reshape(-1, pose.shape[-1])
+        result = np.empty(len(flat))
+        for first in range(0, len(flat), _SLICE):
+            part = slice(first, first + _SLICE)
+            (j_mw,) = self._evaluate(expressions.homogeneous, flat[part], length)
+            good = np.isfinite(j_mw).all(axis=(-2, -1))
+            result[part] = np.where(np.isnan(j_mw).any(axis=(-2, -1)), np.nan, np.inf)
+            result[part][good] = np.linalg.cond(j_mw[good])
+        return result.reshape(pose.shape[:-1])
+
+    def margin(
+        self, name: str, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None
+    ) -> Array:
+        """(...,) a named margin, the larger the better: the smallest of its components at each pose.
+
+        reach [m]; joint_travel, the room to the nearest joint limit in that joint's unit, and passive_joint [rad], that
+        at the rods' ends; fvi; J_q (the worst |J_q,i| over its scale), det_J_q, det_J_x (normalised, in [0, 1]), and
+        what the mechanism adds. NaN where the pose is out of reach (but for reach itself).
+        """
+        if name == "reach":
+            return np.asarray(self._reach(pose).min(axis=-1))
+        program = self.margin_program(name, bounds, characteristic_length)
+        return evaluate(program, self._poses(pose), blank=True)[0][..., 0]
+
+    def margin_program(
+        self, name: str, bounds: FviBounds | None = None, characteristic_length: float | None = None
+    ) -> BlockProgram:
+        """What computes a margin other than reach: at a pose, the margin and a number that is NaN out of reach."""
+        length = self._length(characteristic_length)
+        return self.program(expressions.within_reach, expressions.margin, name, bounds or self.fvi_bounds, length)
+
+    def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
+        """A margin's components in the model's symbols `pose` and `geometry`, each to be at least the bound.
+
+        Raises:
+            InvalidValue: the mechanism has no such margin.
+        """
+        if name not in self.margins:
+            raise InvalidValue(f"{type(self).__name__} margin", name, f"one of {', '.join(self.margins)}")
+        model = self.model()
+        if name == "reach":
+            return self.reach(model.pose, model.g)
+        if name == "joint_travel":
+            return joint_travel(model.inverse, self.ranges.limits(len(self.joint_names)))
+        if name == "passive_joint":
+            return self.passive_rows(lambda joint, limits: joint.room(limits))
+        if name == "clearance":
+            return ca.vertcat(*(ca.norm_2(segment_gap_symbolic(one, two)) for one, two in self.segment_pairs()))
+        if name == "fvi":
+            return fvi_components(self.homogeneous_jacobian(characteristic_length), bounds)
+        q_scale, x_scale = self.scales(model.g)
+        if name == "det_J_x":
+            return volume(model.j_x_at_pose) / x_scale
+        normalised = ca.fabs(model.j_q_at_pose) / q_scale
+        if name == "J_q":
+            return normalised
+        result = ca.SX(1)
+        for i in range(normalised.shape[0]):
+            result *= normalised[i]
+        return result
+
+    def passive_rows(self, rows: Callable[[PassiveJoint, Pair], list[ca.SX]]) -> ca.SX:
+        """Expressions of every passive joint and the limits, in the symbols `pose` and `geometry`."""
+        model, limits = self.model(), self.ranges.passive
+        joints = self.passive_joints(model.pose, model.joints, model.g)
+        return model.at_pose(ca.vertcat(*(row for joint in joints for row in rows(joint, limits))))
+
+    def polylines(self, pose: Array) -> dict[str, Array]:
+        """Named polylines (k, 3) of the mechanism at one pose (n,), for drawing."""
+        lines, model = self._evaluate(expressions.skeleton, pose), self.model()
+        return dict(zip(self.skeleton(model.pose, model.joints, model.g), (p.T for p in lines), strict=True))
+
+    def singularities(self, pose: Array, tolerance: float = 1e-6) -> dict[str, Array]:
+        """Which kinds of singularity hold at the poses, (...,) each; False where a limb cannot reach.
+
+        `serial` (J_q; the paper's under-mobility), `parallel` (J_x; over-mobility) and, where single rods hold the
+        platform's orientation, `internal` (J_int); each where the normalised margin is at most the tolerance.
+        """
+        kinds = {"serial": "det_J_q", "parallel": "det_J_x", "internal": "internal_determinant"}
+        return {k: self.margin(name, pose) <= tolerance for k, name in kinds.items() if name in self.margins}
+
+    def require_reachable(self, pose: Array) -> None:
+        """Check every pose.
+
+        Raises:
+            UnreachablePose: naming the worst pose, its limb (counted from 1) and margin [m].
+        """
+        pose = self._poses(pose)
+        margins = self._reach(pose)
+        margins = np.where(np.isnan(margins), -np.inf, margins).reshape(-1, margins.shape[-1])
+        if margins.size and margins.min() < 0.0:
+            row, limb = np.unravel_index(int(margins.argmin()), margins.shape)
+            worst = pose.reshape(-1, pose.shape[-1])[row]
+            raise UnreachablePose(worst, int(limb) + 1, float(margins[row, limb]))
+
+    # Helpers.
+
+    def homogeneous_jacobian(self, characteristic_length: float) -> ca.SX:
+        """(m, n) J_mw of the actuators, in the model's symbols `pose` and `geometry`."""
+        return homogeneous(self.model().actuator_jacobian, self.rotations, characteristic_length)
+
+    def _reach(self, pose: Array) -> Array:
+        """(..., limbs) each limb's reach [m]."""
+        return evaluate(self.program(expressions.reach), self._poses(pose), blank=True)[0]
+
+    def _length(self, given: float | None) -> float:
+        length = self.characteristic_length if given is None else float(given)
+        if not np.isfinite(length) or length <= 0.0:
+            raise InvalidValue("characteristic_length", given, "a finite length > 0 m")
+        return length
+
+    def _evaluate(self, write: Callable[..., list[ca.SX]], pose: Array, *given: Any) -> list[Array]:
+        """What `write(robot, model, *given)` says at each pose; NaN as a whole where a limb cannot reach.
+
+        NaN too where the pose is not finite or any of the outputs has no value.
+        """
+        program = self.program(expressions.within_reach, write, *given)
+        return evaluate(program, self._poses(pose), blank=True)[:-1]
+
+    def program(self, write: Write, *given: Any) -> BlockProgram:
+        """As `program_of`."""
+        return program_of(self, write, *given)
+
+    def _poses(self, pose: Array) -> Array:
+        return checked(pose, "pose", self.pose_names)
+
+    def _joints(self, joints: Array) -> Array:
+        return checked(joints, "joints", self.joint_names)
+
+    def _one(self, joints: Array) -> Array:
+        """(m,), for `assembly_modes`."""
+        joints = self._joints(joints)
+        if joints.ndim != 1:
+            raise InvalidShape("joints of assembly_modes, one at a time", self.joint_names, joints.shape)
+        return joints
+
+
+def _vector(given: Sequence[float] | Array | None, what: str, names: tuple[str, ...]) -> list[float] | None:
+    """Finite numbers under these names."""
+    if given is None:
+        return None
+    array = checked(np.asarray(given), what, names)
+    if array.shape != (len(names),) or not np.isfinite(array).all():
+        raise InvalidValue(what, f"{given!r:.80}", f"{len(names)} finite numbers: {', '.join(names)}")
+    return list(array.tolist())

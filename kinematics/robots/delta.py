@@ -1,0 +1,165 @@
+"""Delta (Clavel; Khalil and Dombre 2002, 8.5.3): rotary arms and pairs of rods translate a plate."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from types import SimpleNamespace
+
+import casadi as ca
+import numpy as np
+
+from kinematics.arrays import Array
+from kinematics.evaluation import evaluate
+from kinematics.machine import Bodies, GeometryRecord, Particle, angle, length
+from kinematics.mathematics import not_below_zero
+from kinematics.model import Build, FviBounds, Model
+from kinematics.robots.shared import (
+    ArmInertia,
+    ArmRanges,
+    Limbs,
+    RotaryLimbs,
+    central_limbs,
+    columns,
+    height_in_reach,
+    radial_directions,
+)
+
+_DEG = math.pi / 180.0
+_SAME = 1e-6  # of a rod: rounding parts the two poses of a double root by no more
+_CLOSED = 1e-9  # of the robot's size: a pose that misses its rods by more is none
+
+
+@dataclass(frozen=True)
+class DeltaGeometry(GeometryRecord):
+    """A pick-and-place robot of usual size: an assumption of this project, as the chapter gives no dimensions.
+
+    Raises:
+        InvalidGeometry: besides what any geometry refuses: two azimuths are equal.
+    """
+
+    base_radius: float = length(0.200, doc="R, of the actuators' axes")
+    platform_radius: float = length(0.045, doc="r, of the plate")
+    arm_length: float = length(0.350, doc="L, actuator to rod")
+    rod_length: float = length(0.800, doc="l, rod")
+    azimuths: tuple[float, ...] = angle((0.0, 120 * _DEG, 240 * _DEG), doc="alpha, of the limbs")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if abs(_triangle(np.array(self.azimuths))) < 1e-9:
+            raise self._invalid("azimuths", self.azimuths, "three directions, no two the same")
+
+
+@dataclass(frozen=True)
+class DeltaInertia(ArmInertia):
+    """Arms as everywhere here; and the plate.
+
+    Attributes:
+        plate_mass: the payload is a point on it.
+    """
+
+    plate_mass: float = 0.45
+
+
+class Delta(RotaryLimbs):
+    """Pose [x, y, z] of the plate's centre, joints q1..q3 measured from e_z outward; elbows out, usually."""
+
+    Geometry = DeltaGeometry
+    Inertia = DeltaInertia
+    Ranges = ArmRanges
+    geometry: DeltaGeometry
+    inertia: DeltaInertia
+    pose_names = ("x", "y", "z")
+    joint_names = ("q1", "q2", "q3")
+    joint_units = ("rad",) * 3
+    rotations = ()
+    fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
+    margins = (*RotaryLimbs.margins, "passive_joint")
+
+    @property
+    def characteristic_length(self) -> float:
+        """1 m, and without effect: a translation has no rotation to be made a length."""
+        return 1.0
+
+    @staticmethod
+    def default_home(geometry: DeltaGeometry) -> tuple[float, ...]:
+        """On the axis below the drives, in the middle of the reach."""
+        g = geometry
+        return 0.0, 0.0, -height_in_reach(g.base_radius, g.platform_radius, g.arm_length, g.rod_length)
+
+    @staticmethod
+    def limbs(g: SimpleNamespace) -> Limbs:
+        """Arms in vertical planes through e_z."""
+        return central_limbs(g)
+
+    @staticmethod
+    def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """Each pair of rods by the line midway."""
+        return columns(pose, 3) + g.platform_radius * radial_directions(g.azimuths)[0]
+
+    @staticmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """L l for each J_q,i; l^3 for det J_x."""
+        return ca.repmat(g.arm_length * g.rod_length, 3, 1), g.rod_length**3
+
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
+        """Arms, rods, plate and payload."""
+        bodies = self.limb_bodies(pose, joints, g, self.inertia.rod_mass, ["plate"] * 3)
+        bodies.particles.append(Particle("plate", self.inertia.plate_mass + payload, pose))
+        return bodies
+
+    @classmethod
+    def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
+        """Base, arms, rod pairs by their midlines, plate."""
+        return cls.limb_lines(pose, joints, g) | {"platform": cls.platform_points(pose, g)[:, [0, 1, 2, 0]]}
+
+    # The forward model: three spheres of radius l, of 2nd degree (8.6.4.1).
+
+    def _both(self, joints: Array) -> Array:
+        """(..., 3) -> (2, ..., 3), the plate on either side of the elbows' plane; NaN where there is none."""
+        both: Array = np.stack(evaluate(self.program(_spheres), joints))
+        with np.errstate(invalid="ignore"):  # with the three centres all but on one line, rounding is all that is left
+            closed = (np.abs(self.closure_gap(both, np.stack([joints, joints]))) <= _CLOSED).all(axis=-1)
+        return np.where(closed[..., None], both, np.nan)
+
+    @cached_property
+    def _side(self) -> int:
+        """Which of `_both` home is."""
+        away = np.linalg.norm(self._both(self.inverse(self.home)) - self.home, axis=-1)
+        if np.isfinite(away).all():
+            return int(away.argmin())
+        return 0 if _triangle(np.array(self.geometry.azimuths)) > 0.0 else 1  # below, the limbs counted either way
+
+    def working_forward(self, joints: Array) -> Array:
+        """(..., 3) -> (..., 3): on the side of the plane of the rods' upper ends (moved inward by r) where home is."""
+        return self._both(self._joints(joints))[self._side]
+
+    def assembly_modes(self, joints: Array) -> Array:
+        """(3,) -> (k, 3), every real pose with these joints, none or two (one where they meet); the working one first.
+
+        None where the spheres' centres lie on one line, as there is no isolated pose then.
+        """
+        joints = self._one(joints)
+        both = self._both(joints)[[self._side, 1 - self._side]]
+        both = both[np.isfinite(both).all(axis=-1)]
+        meet = len(both) and np.abs(both[0] - both[1]).max() <= _SAME * self.geometry.rod_length
+        return both[:1] if meet else both
+
+
+def _spheres(robot: Delta, model: Model) -> Build:
+    """The two points that are a rod from each elbow, all moved inward by r."""
+    centres = robot.limbs(model.g).elbows(model.joints) - robot.platform_points(ca.SX(3, 1), model.g)
+    second, third = centres[:, 1] - centres[:, 0], centres[:, 2] - centres[:, 0]
+    normal = ca.cross(second, third)
+    square = ca.sumsqr(normal)
+    foot = ca.cross(ca.sumsqr(second) * third - ca.sumsqr(third) * second, normal) / (2 * square)
+    rod = model.g.rod_length**2
+    height = ca.sqrt(not_below_zero(rod - ca.sumsqr(foot), rod) / square) * normal
+    return [model.joints], [centres[:, 0] + foot - height, centres[:, 0] + foot + height]
+
+
+def _triangle(azimuths: Array) -> float:
+    """Twice the signed area of the triangle on the unit circle, positive counter-clockwise."""
+    x, y = np.cos(azimuths), np.sin(azimuths)
+    return float((x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]))

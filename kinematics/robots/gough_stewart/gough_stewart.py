@@ -1,0 +1,259 @@
+"""Gough-Stewart platform, six UPS legs (Khalil and Dombre 2002, chapter 8; equation numbers are the chapter's).
+
+Pose [x, y, z, roll, pitch, yaw] of the tool frame R_E in the reference frame R_f, R = Rz(yaw) Ry(pitch) Rx(roll);
+twists (v of O_E, omega) and wrenches (force, moment about O_E) are expressed in R_f. Joints are the leg lengths.
+"""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from kinematics.arrays import Array
+from kinematics.errors import InvalidShape
+from kinematics.machine import TURN, Bodies, Particle, PassiveJoint, Rotor
+from kinematics.model import FviBounds, Mechanism, Mode, Model
+from kinematics.robots.gough_stewart.forward import ForwardSolution, assembly_modes, matched_pose
+from kinematics.robots.gough_stewart.geometry import GoughStewartGeometry, GoughStewartInertia, GoughStewartRanges
+from kinematics.robots.gough_stewart.six_legs import SixLegs
+
+_SCREW = ("x", "y", "z", "about x", "about y", "about z")
+
+
+class GoughStewart(SixLegs):
+    """Pose [x, y, z, roll, pitch, yaw], joints q1..q6, the leg lengths |A_i B_i|.
+
+    A leg reaches every point but its own base joint; what its stroke leaves of that is the margin `joint_travel`.
+    """
+
+    Geometry = GoughStewartGeometry
+    Inertia = GoughStewartInertia
+    Ranges = GoughStewartRanges
+    geometry: GoughStewartGeometry
+    inertia: GoughStewartInertia
+    joint_units = ("m",) * 6
+    fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=2000.0, speed=0.3, force=500.0)
+    margins = (*SixLegs.margins, "passive_joint")
+
+    @staticmethod
+    def default_home(geometry: GoughStewartGeometry) -> tuple[float, ...]:
+        """The platform above the base, turned to match it best.
+
+        Above is along the normal of the base's mean plane, on the side of R_0's z axis (or x, or y, if level with it),
+        three quarters of the mean radii's sum away.
+        """
+        base, platform = geometry.in_reference_frame(), geometry.in_tool_frame()
+        a, b = base - base.mean(axis=0), platform - platform.mean(axis=0)
+        normal = np.linalg.svd(a)[2][2]
+        components = np.array(geometry.Z)[:3, :3].T @ normal
+        signs = [c for c in components[[2, 0, 1]] if abs(c) > 1e-9]
+        radii = sum(np.linalg.norm(points, axis=1).mean() for points in (a, b))
+        return tuple(matched_pose(base, platform, 0.75 * radii * math.copysign(1.0, signs[0]) * normal).tolist())
+
+    # Points.
+
+    @staticmethod
+    def base_points(g: SimpleNamespace) -> ca.SX:
+        """(3, 6) A_i in R_f; [8.6]."""
+        z = ca.reshape(g.Z, 4, 4).T
+        return z[:3, :3] @ ca.reshape(g.base_points, 3, 6) + ca.repmat(z[:3, 3], 1, 6)
+
+    @staticmethod
+    def tool_points(g: SimpleNamespace) -> ca.SX:
+        """(3, 6) B_i in R_E, by the inverse of E; [8.7] prints E itself."""
+        e = ca.reshape(g.E, 4, 4).T
+        return e[:3, :3].T @ (ca.reshape(g.platform_points, 3, 6) - ca.repmat(e[:3, 3], 1, 6))
+
+    @staticmethod
+    def legs(pose: ca.SX, g: SimpleNamespace, twist: ca.SX | None = None) -> ca.SX:
+        """(3, 6) A_i B_i in R_f; [8.10]. With a small twist: after that displacement, to first order."""
+        ends = GoughStewart.rotation(pose) @ GoughStewart.tool_points(g)
+        place = pose[:3]
+        if twist is not None:
+            ends, place = ends + ca.skew(twist[3:]) @ ends, place + twist[:3]
+        return ends + ca.repmat(place, 1, 6) - GoughStewart.base_points(g)
+
+    # The closure and its closed forms.
+
+    @staticmethod
+    def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """q_i - |A_i B_i|: J_q is the identity and J_x the inverse Jacobian [8.20]."""
+        return joints - GoughStewart.leg_lengths(pose, g)
+
+    @classmethod
+    def closure_by_twist(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """By a small displacement of the platform itself: regular at a pitch of a quarter turn too."""
+        twist = ca.SX.sym("twist", 6)
+        legs = cls.legs(pose, g, twist)
+        derivative = ca.jacobian(joints - _lengths(legs), twist)
+        return ca.substitute(derivative, twist, ca.SX.zeros(6))
+
+    def cleared_j_x(self) -> tuple[ca.SX, ca.SX]:
+        """Rows of half the squared lengths, which are polynomial; divided by the lengths they are J_x."""
+        model, twist = self.model(), ca.SX.sym("twist", 6)
+        squares = ca.sum1(self.legs(model.pose, model.g, twist) ** 2).T / 2
+        return ca.substitute(ca.jacobian(squares, twist), twist, ca.SX.zeros(6)), model.inverse
+
+    @staticmethod
+    def leg_lengths(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(6,) [8.11]."""
+        return _lengths(GoughStewart.legs(pose, g))
+
+    @staticmethod
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace, mode: Mode) -> ca.SX:  # noqa: ARG004
+        """[8.11]; unique, as a length is positive."""
+        return GoughStewart.leg_lengths(pose, g)
+
+    @staticmethod
+    def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """The leg itself: it reaches everything but its own base joint [m]."""
+        return GoughStewart.leg_lengths(pose, g)
+
+    @staticmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """1 for J_q; 8 rho^3 for det J_x, rho the root mean square distance of the B_i from their centroid.
+
+        By Hadamard's inequality on columns of squared sums 6 and 6 rho^2 (moments taken about the centroid).
+        """
+        points = ca.reshape(g.platform_points, 3, 6)
+        centred = points - ca.repmat(ca.sum2(points) / 6, 1, 6)
+        mean_square = ca.sumsqr(centred) / 6
+        return ca.SX.ones(6), 8 * mean_square * ca.sqrt(mean_square)
+
+    def inverse(self, pose: Array) -> Array:
+        """(..., 6) -> (..., 6) leg lengths [m]; a NaN row where a leg has no length."""
+        return self._possible(super().inverse(pose))
+
+    @staticmethod
+    def _possible(joints: Array) -> Array:
+        possible = ((joints > 0.0) & np.isfinite(joints)).all(axis=-1, keepdims=True)
+        return np.where(possible, joints, np.nan)
+
+    # Rates and forces.
+
+    def leg_rates(self, pose: Array, twist: Array) -> Array:
+        """(..., 6), (..., 6) -> (..., 6) leg rates [m/s] from the twist of R_E; [8.12]."""
+        return np.einsum("...ij,...j->...i", self.inverse_jacobian(pose), _six(twist, "twist", _SCREW))
+
+    def legs_wrench(self, pose: Array, forces: Array) -> Array:
+        """(..., 6), (..., 6) -> (..., 6) the wrench that the legs exert on the platform; [8.26].
+
+        Args:
+            forces: along the legs [N], positive where a leg pushes.
+
+        Returns:
+            force [N] and moment about O_E [N m].
+        """
+        return np.einsum("...ij,...i->...j", self.inverse_jacobian(pose), _six(forces, "leg forces", self.joint_names))
+
+    def leg_forces(self, pose: Array, external_wrench: Array) -> Array:
+        """(..., 6), (..., 6) -> (..., 6) leg forces [N] that balance an external wrench on the platform.
+
+        The legs' own wrench is the opposite of the external one, so [8.26] enters with a minus sign. NaN on a
+        singularity.
+        """
+        transposed = np.swapaxes(self.inverse_jacobian(pose), -1, -2)
+        wrench = np.broadcast_to(_six(external_wrench, "wrench", _SCREW), transposed.shape[:-1])
+        values = np.linalg.svd(np.nan_to_num(transposed), compute_uv=False)
+        singular: Array = values[..., -1] <= 6.0 * np.finfo(float).eps * values[..., 0]
+        safe = np.where(singular[..., None, None], np.eye(6), transposed)
+        return np.where(singular[..., None], np.nan, np.linalg.solve(safe, -wrench[..., None])[..., 0])
+
+    # The forward model.
+
+    def lengths_and_jacobian(self, pose: Array) -> tuple[Array, Array]:
+        """Leg lengths (..., 6) and the inverse Jacobian (..., 6, 6) [8.20] at once."""
+        lengths, jacobian = self._evaluate(_newton, pose)
+        return lengths, jacobian
+
+    def leg_errors(self, pose: Array, joints: Array) -> tuple[Array, Array]:
+        """(k, 6) what each leg lacks to have the length wanted [m], and the inverse Jacobian (k, 6, 6)."""
+        lengths, jacobian = self.lengths_and_jacobian(pose)
+        return joints - lengths, jacobian
+
+    def leg_sizes(self, joints: Array) -> tuple[Array, Array]:
+        """(k,) mean leg length, and the largest number that rounding of a leg's length comes from [m]."""
+        points = (self.geometry.in_reference_frame(), self.geometry.in_tool_frame())
+        return joints.mean(axis=1), joints.max(axis=1) + sum(float(np.abs(p).max()) for p in points)
+
+    def working_forward(self, joints: Array) -> Array:
+        """(..., 6) -> (..., 6): continued from home; NaN where a length is not positive."""
+        return super().working_forward(self._possible(self._joints(joints)))
+
+    def newton(self, joints: Array, start: Array | None = None, iterations: int = 30) -> ForwardSolution:
+        """As everywhere here; NaN where a length is not positive."""
+        return super().newton(self._possible(self._joints(joints)), start, iterations)
+
+    def assembly_modes(self, joints: Array) -> Array:
+        """(6,) -> (k, 6), every real pose with these leg lengths, at most 40; the nearest to home first.
+
+        Raises:
+            SelfMotion: the platform can move with its legs locked, so there are infinitely many.
+            LostPaths: the continuation that finds them could not be certified.
+        """
+        joints = self._one(joints)
+        return assembly_modes(self, self._possible(joints))
+
+    # Masses and drawing.
+
+    def conditions(self) -> dict[str, Any]:
+        """Home too, where the joints rest there."""
+        at_home = {"home": self.home.tolist()} if self.ranges.rest is None else {}
+        return super().conditions() | at_home
+
+    def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:
+        """Universal joints on the base and spherical ones on the platform, mounted along the legs at `ranges.rest`."""
+        rest = self.home if self.ranges.rest is None else (*self.ranges.rest, 0, 0, 0)
+        rest_pose, legs = ca.vertcat(*rest), self.legs(pose, g)
+        rests = self.legs(rest_pose, g)
+        axes = rests @ ca.diag(1 / _lengths(rests))
+        turned = self.rotation(pose) @ (self.rotation(rest_pose).T @ axes)
+        return [
+            PassiveJoint(held[:, i], legs[:, i], joints[i], end, swivels=False)
+            for end, held in enumerate((axes, turned))
+            for i in range(6)
+        ]
+
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
+        """Screws driven by the joints; rods, platform and payload carried by the pose."""
+        i, bodies = self.inertia, Bodies(self.inertia.rod_middle)
+        legs = self.legs(pose, g)
+        ends = self.base_points(g) + legs
+        shares = {0.0: 1 / 6, 0.5: 4 / 6, 1.0: 1 / 6} if i.rod_length else {0.0: 1.0}
+        for k in range(6):
+            bodies.rotors.append(Rotor(i.drive * (TURN / i.screw_lead) ** 2, joints[k]))
+            for place, share in shares.items():
+                point = ends[:, k] - place * i.rod_length / ca.norm_2(legs[:, k]) * legs[:, k]
+                bodies.particles.append(Particle(f"leg {k + 1}", share * i.rod_mass, point))
+        self.platform_bodies(pose, ends, payload, bodies)
+        return bodies
+
+    @staticmethod
+    def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:  # noqa: ARG004
+        """Base and platform as closed polygons, the six legs, and the tool from the platform's centroid."""
+        base = GoughStewart.base_points(g)
+        ends = base + GoughStewart.legs(pose, g)
+        around = [*range(6), 0]
+        lines = {"base": base[:, around], "platform": ends[:, around]}
+        lines.update({f"leg {i + 1}": ca.horzcat(base[:, i], ends[:, i]) for i in range(6)})
+        lines["tool"] = ca.horzcat(ca.sum2(ends) / 6, pose[:3])
+        return lines
+
+
+def _newton(_: Mechanism, model: Model) -> list[ca.SX]:
+    return [model.inverse, model.j_x]
+
+
+def _lengths(legs: ca.SX) -> ca.SX:
+    return ca.sqrt(ca.sum1(legs * legs)).T
+
+
+def _six(values: Array, what: str, names: tuple[str, ...]) -> Array:
+    array = np.asarray(values, dtype=float)
+    if array.ndim == 0 or array.shape[-1] != 6:
+        raise InvalidShape(what, names, array.shape)
+    return array

@@ -1,0 +1,296 @@
+"""Heli4 (Krut, Company, Nabat, Pierrot, IROS 2006): four rotary drives, two plates, a screw that turns the tool.
+
+Limbs 1 and 2 carry the plate at the tool's height, limbs 3 and 4 the plate that rides on the screw. Equation numbers
+are the paper's; where it errs, the expression here follows from the closure and the documentation says so.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from types import SimpleNamespace
+
+import casadi as ca
+import numpy as np
+
+from kinematics.arrays import Array
+from kinematics.evaluation import evaluate
+from kinematics.machine import TURN, Bodies, Particle, Rotor, angle, length, screw_pitch
+from kinematics.mathematics import gaps, real_roots, working_first
+from kinematics.model import Build, FviBounds, Model, in_aspect, joined_to_home, polished
+from kinematics.robots.heli4.forward import Plates, plates
+from kinematics.robots.shared import (
+    ArmInertia,
+    ArmRanges,
+    HalvesGeometry,
+    Limbs,
+    RodLevel,
+    RotaryLimbs,
+    central_limbs,
+    height_in_reach,
+    outline,
+    radial_directions,
+)
+
+_UPPER = (0.0, 0.0, 1.0, 1.0)  # which limbs hold the plate that rides on the screw: (7), (8)
+_DEG = math.pi / 180.0
+_E_Z = ca.DM([0, 0, 1])
+_SAME = 1e-6  # rad, or of the robot's size: poses that differ by no more are one
+_APART = 0.25  # of a rod: with plates further apart the roots may change their order
+_OPEN = 1e-12  # rad, or of the robot's size: by what displacement a closed form may miss
+
+
+@dataclass(frozen=True)
+class Heli4Geometry(HalvesGeometry):
+    """Table 1 of the paper, in metres and radians.
+
+    Raises:
+        InvalidGeometry: besides what any geometry refuses: both limbs of a plate have the same azimuth.
+    """
+
+    base_radius: float = length(0.350, doc="R, of the actuators' axes")
+    platform_radius: float = length(0.041, doc="r, of the plates")
+    arm_length: float = length(0.351, doc="L, actuator to rod")
+    rod_length: float = length(0.800, doc="l, rod")
+    height_step: float = length(0.0, minimum=None, doc="H, actuators 3 and 4 above 1 and 2")
+    plate_offset: float = length(0.041, minimum=None, doc="h, plates above the tool point")
+    pitch: float = screw_pitch(0.050, doc="p, of the screw")
+    azimuths: tuple[float, ...] = angle((0.0, 180 * _DEG, 90 * _DEG, 270 * _DEG), doc="alpha, of the limbs")
+    parallelogram_width: float = length(0.1, doc="d, between the two rods of a limb; not in the paper")
+
+
+@dataclass(frozen=True)
+class Heli4Inertia(ArmInertia):
+    """Arms as everywhere here; and the plates.
+
+    Attributes:
+        plate_masses: lower plate (limbs 1 and 2) and upper plate.
+        tool: inertia of the tool about e_z; the payload is a point on the lower plate.
+    """
+
+    plate_masses: tuple[float, float] = (0.55, 0.55)
+    tool: float = 6e-4
+
+
+class Heli4(RotaryLimbs, RodLevel):
+    """Pose [x, y, z, theta], joints q1..q4 measured from e_z."""
+
+    Geometry = Heli4Geometry
+    Inertia = Heli4Inertia
+    Ranges = ArmRanges
+    geometry: Heli4Geometry
+    inertia: Heli4Inertia
+    pose_names = ("x", "y", "z", "theta")
+    joint_names = ("q1", "q2", "q3", "q4")
+    joint_units = ("rad",) * 4
+    rotations = (3,)
+    counts_turns = True
+    fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=150.0)
+    margins = (*RodLevel.margins, "passive_joint")
+    rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta", "epsilon_1", "epsilon_2")
+    # (51): sums and differences of a limb's two rods; the plates' own rotations in place of the relative ones.
+    row_combinations = np.vstack([np.kron(np.eye(4), [0.5, 0.5]), np.kron(np.eye(4), [1.0, -1.0])])
+    column_combinations = np.eye(8)[[0, 1, 2, 4, 5, 3, 6, 7]] - np.outer([0] * 6 + [1, 1], np.eye(8)[3])
+
+    @property
+    def characteristic_length(self) -> float:
+        """p / (2 pi): the screw's lead turns a rotation into the travel between the plates [m]."""
+        return abs(self.geometry.pitch) / TURN
+
+    @staticmethod
+    def default_home(geometry: Heli4Geometry) -> tuple[float, ...]:
+        """On the axis below the drives, in the middle of the reach."""
+        g = geometry
+        depth = height_in_reach(g.base_radius, g.platform_radius, g.arm_length, g.rod_length)
+        return 0.0, 0.0, -depth - g.plate_offset, 0.0
+
+    # Points.
+
+    @staticmethod
+    def limbs(g: SimpleNamespace) -> Limbs:
+        """P_i, (2), (3), and the arms' directions, (4), (5): q from e_z outward."""
+        limbs = central_limbs(g)
+        return limbs._replace(actuators=limbs.actuators + _heights(g.height_step * ca.DM(_UPPER)))
+
+    @staticmethod
+    def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """B_i (3, 4), where the rods meet the plates; (6)-(8), with p in metres per radian."""
+        upper = ca.DM(_UPPER)
+        heights = g.plate_offset + upper * (g.height_step + g.pitch / TURN * pose[3])
+        return ca.repmat(pose[:3], 1, 4) + g.platform_radius * radial_directions(g.azimuths)[0] + _heights(heights)
+
+    # What makes it dimensionless.
+
+    @staticmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """L l for each J_q,i; p l^4 for det J_x."""
+        return ca.repmat(g.arm_length * g.rod_length, 4, 1), ca.fabs(g.pitch / TURN) * g.rod_length**4
+
+    # The rods, one by one.
+
+    @staticmethod
+    def rod_closure(pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(8,) rods 11, 12, 21, ... 42; (47). The plates turn by theta + epsilon, the upper one climbs by -p epsilon_2.
+
+        The paper's (49), (53) and (54) print the opposite sign for p, against its own (6).
+        """
+        _, axis = radial_directions(g.azimuths)
+        arms, platforms = Heli4.limbs(g).elbows(joints), Heli4.platform_points(pose, g)
+        rods = []
+        for limb in range(4):
+            plate = ca.vertcat(displacement[3:5], displacement[5] + displacement[6 + limb // 2])
+            climb = -_UPPER[limb] * g.pitch / TURN * displacement[7]
+            for side in (-0.5, 0.5):
+                offset = side * g.parallelogram_width * axis[:, limb]
+                end = platforms[:, limb] + offset
+                moved = end + displacement[:3] + ca.cross(plate, end - pose[:3]) + climb * _E_Z
+                rods.append((ca.sumsqr(arms[:, limb] + offset - moved) - g.rod_length**2) / 2)
+        return ca.vertcat(*rods)
+
+    def internal_determinant_symbolic(self) -> ca.SX:
+        """Expression (59) over d^4 l^4."""
+        model = self.model()
+        rods = model.at_pose(self.rods(model.pose, model.joints, model.g))
+        _, axis = radial_directions(model.g.azimuths)
+        normals = [ca.cross(axis[:, i], rods[:, i]) for i in range(4)]
+        lines = ca.cross(normals[0], normals[1]), ca.cross(normals[2], normals[3])
+        return ca.cross(*lines)[2] / model.g.rod_length**4
+
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
+        """Arms with their drives, rods, plates, payload and tool."""
+        i, plates = self.inertia, ("lower plate", "upper plate")
+        bodies = self.limb_bodies(pose, joints, g, i.rod_mass, [plates[int(k)] for k in _UPPER])
+        upper = pose[:3] + g.pitch / TURN * pose[3] * _E_Z
+        lower = Particle(plates[0], i.plate_masses[0] + payload, pose[:3])
+        bodies.particles.extend([lower, Particle(plates[1], i.plate_masses[1], upper)])
+        bodies.rotors.append(Rotor(i.tool, pose[3]))
+        return bodies
+
+    @staticmethod
+    def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
+        """Actuators' circle, arms, both rods of each limb, the two plates and the tool."""
+        _, axis = radial_directions(g.azimuths)
+        base, arms = Heli4.limbs(g).actuators, Heli4.limbs(g).elbows(joints)
+        platform, half = Heli4.platform_points(pose, g), g.parallelogram_width / 2 * axis
+        order = [0, 2, 1, 3, 0]
+        lines = {"base": base[:, order]}
+        for i in range(4):
+            lines[f"arm {i + 1}"] = ca.horzcat(base[:, i], arms[:, i])
+            lines[f"rods {i + 1}"] = outline(arms[:, i], platform[:, i], half[:, i])
+        lines["platform lower"] = platform[:, [0, 1]]
+        lines["platform upper"] = platform[:, [2, 3]]
+        pointer = pose[:3] + g.platform_radius * ca.vertcat(ca.cos(pose[3]), ca.sin(pose[3]), 0)
+        lines["tool"] = ca.horzcat(platform[:, 0:2] @ ca.DM([0.5, 0.5]), pose[:3], pointer)
+        return lines
+
+    # The forward model.
+
+    def _poses_of(self, joints: Array, w: Array, t: Array) -> Array:
+        """(..., 4) joints and the plates' unknowns w (...,) and t (...,) -> (..., 4) poses."""
+        return evaluate(self.program(_pose_of_root), w[..., None], t[..., None], joints)[0]
+
+    @cached_property
+    def _sheet(self) -> int:
+        """Where home hangs from its four elbows: 1 below them, -1 above them, 0 otherwise."""
+        joints = self.inverse(self.home)
+        if np.isfinite(joints).all():
+            for sheet in (1, -1):
+                if gaps(self._on_sheet(joints, sheet), self.home, self.geometry.size) <= _SAME:
+                    return sheet
+            return 0
+        return 1
+
+    def _on_sheet(self, joints: Array, sheet: int) -> Array:
+        """(..., 4) -> (..., 4): both pairs of limbs on the lower sheet (1), the smallest real root, or the upper."""
+        quartic, kappa = evaluate(self.program(_quartic), joints)
+        signs = np.where(np.arange(4, -1, -1) % 2, sheet, 1)  # of w in place of -w
+        w = sheet * real_roots(quartic * signs, most=1)[..., 0]
+        t = np.divide(kappa[..., 0], w, out=np.full_like(w, np.nan), where=w != 0.0)
+        return self._poses_of(joints, w, t)
+
+    def working_forward(self, joints: Array) -> Array:
+        """(..., 4) -> (..., 4): the pose of home's assembly mode: on its sheet, where that is sure."""
+        joints = self._joints(joints)
+        flat = joints.reshape(-1, 4)
+        poses = self._on_sheet(flat, self._sheet) if self._sheet else np.full(flat.shape, np.nan)
+        doubtful = np.flatnonzero(~self._surely_at_home(poses, flat))
+        if doubtful.size:
+            rows, found = self._candidates(flat[doubtful])
+            poses[doubtful] = joined_to_home(self, rows, found, flat[doubtful])
+        return poses.reshape(joints.shape)
+
+    def _surely_at_home(self, poses: Array, joints: Array) -> Array:
+        """(k,) whether both pairs of limbs hang (or stand) clearly, as at home.
+
+        Where not, beyond a singularity the outermost root may belong to another assembly mode.
+        """
+        together = np.abs(self.geometry.pitch / TURN * poses[:, 3]) <= _APART * self.geometry.rod_length
+        (above,) = evaluate(self.program(_above_elbows), poses, joints)
+        clearly = (self._sheet * above < 0.0).all(axis=-1)
+        sure: Array = together & clearly & in_aspect(self, poses, joints) & ~self._open(poses, joints)
+        return sure
+
+    def _candidates(self, joints: Array) -> tuple[Array, Array]:
+        """(k, 4) joints -> rows (j,) and poses (j, 4), every real one, in the order of w."""
+        in_w, in_t, kappa = evaluate(self.program(_quartics), joints)
+        # w t = kappa: each unknown serves where it is the larger one, up to a factor that no symmetry makes a tie.
+        least, tie = np.sqrt(np.abs(kappa)), 0.9
+        w, t = real_roots(in_w), real_roots(in_t)
+        by_w = np.nonzero((np.abs(w) >= tie * least) & (w != 0.0))
+        by_t = np.nonzero((np.abs(t) >= least / tie) & (t != 0.0))
+        rows = np.concatenate([by_w[0], by_t[0]])
+        w, t = w[by_w], t[by_t]
+        found = np.concatenate([w, kappa[by_t[0], 0] / t]), np.concatenate([kappa[by_w[0], 0] / w, t])
+        order = np.lexsort((found[0], rows))
+        rows, poses = rows[order], self._poses_of(joints[rows[order]], found[0][order], found[1][order])
+        exact = polished(self, poses, joints[rows], 3)
+        lost = self._open(poses, joints[rows]) & np.isfinite(exact).all(axis=1)  # else on a singularity
+        return rows, np.where(lost[:, None], exact, poses)
+
+    def _open(self, poses: Array, joints: Array) -> Array:
+        """(k,) whether a closed form lost digits on the way."""
+        return np.abs(self.closure_gap(poses, joints)).max(axis=-1) > _OPEN
+
+    def assembly_modes(self, joints: Array) -> Array:
+        """(4,) -> (k, 4), every real pose with these joints, at most four; the working one first."""
+        joints = self._one(joints)
+        _, poses = self._candidates(joints[None])
+        return working_first(poses, self.forward(joints), self.geometry.size)
+
+
+def _plates(model: Model) -> Plates:
+    """From s_i = B_i - A_i with both plates at the origin; (18) with h_i minus the actuator's own height."""
+    spheres = Heli4.platform_points(ca.SX(4, 1), model.g) - Heli4.limbs(model.g).elbows(model.joints)
+    return plates(spheres, model.g.rod_length)
+
+
+def _above_elbows(robot: Heli4, model: Model) -> Build:
+    """(2,) how high each pair of limbs holds its plate above the middle between its elbows, both moved to the plate."""
+    to_elbow = robot.limbs(model.g).elbows(model.joints) - robot.platform_points(model.pose, model.g)
+    return [model.pose, model.joints], [
+        -ca.vertcat(to_elbow[2, 0] + to_elbow[2, 1], to_elbow[2, 2] + to_elbow[2, 3]) / 2
+    ]
+
+
+def _quartic(_: Heli4, model: Model) -> Build:
+    found = _plates(model)
+    return [model.joints], [found.quartic_in_w(), found.kappa]
+
+
+def _quartics(_: Heli4, model: Model) -> Build:
+    found = _plates(model)
+    return [model.joints], [found.quartic_in_w(), found.quartic_in_t(), found.kappa]
+
+
+def _pose_of_root(_: Heli4, model: Model) -> Build:
+    w, t = ca.SX.sym("w"), ca.SX.sym("t")
+    position = _plates(model).positions(w, t)
+    turn = (position[3] - position[2]) / (model.g.pitch / TURN)
+    return [w, t, model.joints], [ca.vertcat(position[:3], turn)]
+
+
+def _heights(values: ca.SX) -> ca.SX:
+    """(3, 4) columns along e_z."""
+    row = values.T if values.shape[1] == 1 and values.shape[0] > 1 else ca.repmat(values, 1, 4)
+    return ca.vertcat(ca.SX(2, 4), row)

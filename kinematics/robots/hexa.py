@@ -1,0 +1,201 @@
+"""Hexa (Pierrot; Khalil and Dombre 2002, 8.5.3): six rotary arms, each with one rod, carry a platform of six freedoms.
+
+Given the arms' angles the elbows are fixed, and what remains is a Gough-Stewart platform: base joints at the elbows,
+legs as long as the rods. Its code gives the forward model.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import casadi as ca
+import numpy as np
+
+from kinematics.arrays import Array
+from kinematics.evaluation import evaluate
+from kinematics.machine import TURN, Bodies, GeometryRecord, angle, length
+from kinematics.model import Build, FviBounds, Model
+from kinematics.robots.gough_stewart import (
+    GoughStewart,
+    GoughStewartGeometry,
+    SixLegs,
+    apart,
+    matched_pose,
+    symmetric_points,
+)
+from kinematics.robots.shared import (
+    ArmInertia,
+    ArmRanges,
+    Limbs,
+    RotaryLimbs,
+    columns,
+    radial_directions,
+    twins,
+    upright_limbs,
+)
+
+_BASE = symmetric_points(0.28, TURN / 18, 0.0)
+_PLATFORM = symmetric_points(0.10, TURN / 18, TURN / 6)
+_DEPTH = 0.55 / (0.300 + 0.650)  # of the default home, over arm and rod
+_IDENTITY = ca.SX(ca.DM.eye(4).reshape((16, 1)))
+
+
+@dataclass(frozen=True)
+class HexaGeometry(GeometryRecord):
+    """A robot of a Delta's size: an assumption of this project, as the chapter gives no dimensions.
+
+    Raises:
+        InvalidGeometry: besides what any geometry refuses: the platform's points lie on one line, about which the
+            platform then turns freely; or two limbs are one, with the same drive, arm and platform point.
+    """
+
+    base_points: tuple[tuple[float, ...], ...] = length(_BASE, minimum=None, doc="P_i, on the arms' axes")
+    platform_points: tuple[tuple[float, ...], ...] = length(
+        _PLATFORM[-1:] + _PLATFORM[:-1], minimum=None, doc="B_i, in the platform's frame"
+    )
+    arm_azimuths: tuple[float, ...] = angle(
+        tuple(TURN / 3 * (i // 2) for i in range(6)), doc="of the arms' vertical planes, outward"
+    )
+    arm_length: float = length(0.300, doc="L, drive to elbow")
+    rod_length: float = length(0.650, doc="l, rod")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        points = np.array(self.platform_points)
+        sizes = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+        if sizes[1] <= 1e-9 * sizes[0]:
+            raise self._invalid("platform_points", self.platform_points, "points that are not on one line")
+        turned = self.arm_length * np.exp(1j * np.array(self.arm_azimuths))
+        limbs = np.column_stack([self.base_points, turned.real, turned.imag, points])
+        if pair := twins(limbs, np.abs(limbs).max()):
+            reason = f"limbs {pair[0]} and {pair[1]} share drive and arm too, det J_x is zero in every pose"
+            raise self._invalid("platform_points", self.platform_points, f"two points for two limbs: {reason}")
+
+
+@dataclass(frozen=True)
+class HexaInertia(ArmInertia):
+    """Arms as everywhere here, with one rod each; and the platform.
+
+    Attributes:
+        platform_mass: in six equal particles at the B_i; the payload is a particle at the tool point.
+    """
+
+    rod_mass: float = 0.13
+    platform_mass: float = 0.8
+
+
+class Hexa(SixLegs, RotaryLimbs):
+    """Pose [x, y, z, roll, pitch, yaw], joints q1..q6 measured from e_z outward; elbows out unless
+    `home_joints` say.
+
+    Orientation and twist are the Gough-Stewart platform's.
+    """
+
+    Geometry = HexaGeometry
+    Inertia = HexaInertia
+    Ranges = ArmRanges
+    geometry: HexaGeometry
+    inertia: HexaInertia
+    joint_units = ("rad",) * 6
+    fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=1.0, force=50.0)
+    margins = (*RotaryLimbs.margins, "passive_joint")
+
+    @staticmethod
+    def default_home(geometry: HexaGeometry) -> tuple[float, ...]:
+        """The platform below the base by a share of arm and rod together, turned to match it best."""
+        base, platform = (np.array(p) for p in (geometry.base_points, geometry.platform_points))
+        below = _DEPTH * (geometry.arm_length + geometry.rod_length)
+        return tuple(matched_pose(base, platform, np.array([0.0, 0.0, -below])).tolist())
+
+    @staticmethod
+    def limbs(g: SimpleNamespace) -> Limbs:
+        """Arms in vertical planes."""
+        radial, _ = radial_directions(g.arm_azimuths)
+        return upright_limbs(ca.reshape(g.base_points, 3, 6), radial, g)
+
+    @staticmethod
+    def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(3, 6) B_i."""
+        return columns(pose[:3], 6) + SixLegs.rotation(pose) @ ca.reshape(g.platform_points, 3, 6)
+
+    @classmethod
+    def platform_axes(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """Parallel to the arms' axes where the platform is not turned."""
+        return SixLegs.rotation(pose) @ cls.limbs(g).axes()
+
+    @staticmethod
+    def _as_hexapod(joints: ca.SX, g: SimpleNamespace) -> SimpleNamespace:
+        """The Gough-Stewart platform whose base joints are the elbows and whose legs are the rods."""
+        elbows = ca.vec(Hexa.limbs(g).elbows(joints))
+        return SimpleNamespace(base_points=elbows, platform_points=g.platform_points, Z=_IDENTITY, E=_IDENTITY)
+
+    @classmethod
+    def closure_by_twist(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """The hexapod's, each row times its rod: regular at a pitch of a quarter turn too."""
+        hexapod = cls._as_hexapod(joints, g)
+        legs = GoughStewart.legs(pose, hexapod)
+        unit = GoughStewart.closure_by_twist(pose, joints, hexapod)
+        return -ca.diag(ca.sqrt(ca.sum1(legs * legs))) @ unit
+
+    @staticmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """L l for each J_q,i; the Gough-Stewart platform's 8 rho^3 times l^6 for det J_x."""
+        _, hexapod = GoughStewart.scales(g)
+        return ca.repmat(g.arm_length * g.rod_length, 6, 1), hexapod * g.rod_length**6
+
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
+        """Arms, rods, platform, payload."""
+        bodies = self.limb_bodies(pose, joints, g, self.inertia.rod_mass, ["platform"] * 6)
+        self.platform_bodies(pose, self.platform_points(pose, g), payload, bodies)
+        return bodies
+
+    @classmethod
+    def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
+        """Base, arms, rods, platform, tool."""
+        ends = cls.platform_points(pose, g)
+        lines = cls.limb_lines(pose, joints, g) | {"platform": ends[:, [*range(6), 0]]}
+        return lines | {"tool": ca.horzcat(ca.sum2(ends) / 6, pose[:3])}
+
+    # The forward model.
+
+    def leg_errors(self, pose: Array, joints: Array) -> tuple[Array, Array]:
+        """(k, 6) what the rods lack to reach from the elbows to the platform [m], and the hexapod's Jacobian."""
+        errors, jacobian = evaluate(self.program(_rods_as_legs), pose, joints)
+        return errors, jacobian
+
+    def leg_sizes(self, joints: Array) -> tuple[Array, Array]:
+        """(k,) the rods' length, and the largest number that rounding of an error comes from [m]."""
+        rods = np.full(len(joints), self.geometry.rod_length)
+        points = np.abs(self.geometry.base_points).max() + np.abs(self.geometry.platform_points).max()
+        return rods, rods + self.geometry.arm_length + points
+
+    def assembly_modes(self, joints: Array) -> Array:
+        """(6,) -> (k, 6), every real pose with these joints, at most 40; the nearest to home first.
+
+        Takes some seconds, as other joints make another hexapod.
+
+        Raises:
+            SingularArchitecture: elbows and platform are dependent at every pose, so poses are not isolated.
+            SelfMotion: with these joints locked the platform can move.
+            LostPaths: the continuation that finds them could not be certified.
+        """
+        joints = self._one(joints)
+        if not np.isfinite(joints).all():
+            return np.empty((0, 6))
+        (elbows,) = evaluate(self.program(_elbows), joints)
+        hexapod = GoughStewart(GoughStewartGeometry(tuple(map(tuple, elbows.tolist())), self.geometry.platform_points))
+        modes = hexapod.assembly_modes(np.full(6, self.geometry.rod_length))
+        away = apart(modes, self.home[None], self.characteristic_length)[:, 0]
+        return modes[np.argsort(away, kind="stable")]
+
+
+def _elbows(robot: Hexa, model: Model) -> Build:
+    return [model.joints], [robot.limbs(model.g).elbows(model.joints).T]
+
+
+def _rods_as_legs(robot: Hexa, model: Model) -> Build:
+    hexapod = robot._as_hexapod(model.joints, model.g)
+    lengths = GoughStewart.leg_lengths(model.pose, hexapod)
+    jacobian = -GoughStewart.closure_by_twist(model.pose, model.joints, hexapod)
+    return [model.pose, model.joints], [model.g.rod_length - lengths, jacobian]

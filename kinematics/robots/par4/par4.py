@@ -1,0 +1,206 @@
+"""Par4, the Quattro's architecture (Nabat et al., IROS 2005): four rotary limbs and a platform articulated in a plane.
+
+Limbs 1 and 2 carry one half of the platform, limbs 3 and 4 the other. Two equal parallel bars join the halves into a
+parallelogram (a pi joint): the halves keep their orientation and move on an arc about each other while the bars turn
+by psi; a gear on the bars turns the tool by theta = k psi. The platform's dimensions, and the tool point midway
+between the halves, are assumptions of this project: none of its source texts gives them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import casadi as ca
+import numpy as np
+
+from kinematics.arrays import Array
+from kinematics.evaluation import evaluate
+from kinematics.machine import TURN, Bodies, Particle, Rotor, angle, length, ratio
+from kinematics.mathematics import determinant, distinct, working_first
+from kinematics.model import Build, FviBounds, Mechanism, Model, joined_to_home, polished
+from kinematics.robots.par4.forward import Halves, candidates
+from kinematics.robots.shared import (
+    ArmInertia,
+    ArmRanges,
+    HalvesGeometry,
+    Limbs,
+    RotaryLimbs,
+    central_limbs,
+    columns,
+    height_in_reach,
+    radial_directions,
+)
+
+_DEG = math.pi / 180.0
+_HALF = (-1.0, -1.0, 1.0, 1.0)  # which end of the bars each limb holds
+
+
+@dataclass(frozen=True)
+class Par4Geometry(HalvesGeometry):
+    """A robot of the Quattro's size: an assumption of this project, not a datasheet.
+
+    Raises:
+        InvalidGeometry: besides what any geometry refuses: both limbs of a half have the same azimuth.
+    """
+
+    base_radius: float = length(0.275, doc="R, of the actuators' axes")
+    platform_radius: float = length(0.100, doc="r, of the rods' ends about the tool point at theta = 0")
+    arm_length: float = length(0.375, doc="L, actuator to rod")
+    rod_length: float = length(0.825, doc="l, rod")
+    azimuths: tuple[float, ...] = angle(tuple(a * _DEG for a in (45, 135, 225, 315)), doc="alpha, of the limbs")
+    bar_length: float = length(0.100, doc="b, of the bars between the halves")
+    bar_angle: float = angle(-90 * _DEG, doc="delta, azimuth of the bars from half 1 to half 2 at theta = 0")
+    amplification: float = ratio(4.0, doc="k, turns of the tool a turn of the bars; 1 without a gear")
+
+
+@dataclass(frozen=True)
+class Par4Inertia(ArmInertia):
+    """Arms as everywhere here; and the platform.
+
+    Attributes:
+        half_masses: of the two halves.
+        bars_mass, bars_inertia: of both bars and the gear, their mass about the tool point, inertia about e_z.
+        tool: inertia of the tool about e_z; the payload is a point at the tool point.
+    """
+
+    half_masses: tuple[float, float] = (0.35, 0.35)
+    bars_mass: float = 0.25
+    bars_inertia: float = 5e-4
+    tool: float = 2e-4
+
+
+class Par4(RotaryLimbs):
+    """Pose [x, y, z, theta], joints q1..q4 measured from e_z outward; elbows out.
+
+    A pose stands for bars turned by theta / k; beyond half a turn of the bars, the same place is another theta, and the
+    forward models give the one with |psi| <= pi.
+    """
+
+    Geometry = Par4Geometry
+    Inertia = Par4Inertia
+    Ranges = ArmRanges
+    geometry: Par4Geometry
+    inertia: Par4Inertia
+    pose_names = ("x", "y", "z", "theta")
+    joint_names = ("q1", "q2", "q3", "q4")
+    joint_units = ("rad",) * 4
+    rotations = (3,)
+    counts_turns = True  # of the bars, by the gear
+    fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
+    margins = (*Mechanism.margins, "pi_joint", "passive_joint")
+
+    @property
+    def characteristic_length(self) -> float:
+        """b / k, the travel between the halves a radian of the tool [m]."""
+        return self.geometry.bar_length / self.geometry.amplification
+
+    @staticmethod
+    def default_home(geometry: Par4Geometry) -> tuple[float, ...]:
+        """On the axis below the drives, in the middle of the reach."""
+        g = geometry
+        return 0.0, 0.0, -height_in_reach(g.base_radius, g.platform_radius, g.arm_length, g.rod_length), 0.0
+
+    @staticmethod
+    def limbs(g: SimpleNamespace) -> Limbs:
+        """Arms in vertical planes through e_z."""
+        return central_limbs(g)
+
+    @staticmethod
+    def half_bar(psi: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(3,) from the tool point to half 2, and reversed to half 1."""
+        turned = g.bar_angle + psi
+        return g.bar_length / 2 * ca.vertcat(ca.cos(turned), ca.sin(turned), 0)
+
+    @staticmethod
+    def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """On a circle about the tool point at theta = 0; each half then moves as its end of the bars does."""
+        moved = Par4.half_bar(pose[3] / g.amplification, g) - Par4.half_bar(ca.SX(0), g)
+        return columns(pose[:3], 4) + g.platform_radius * radial_directions(g.azimuths)[0] + moved @ ca.DM(_HALF).T
+
+    @staticmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """L l for each J_q,i; b / k l^4 for det J_x.
+
+        det J_x is +- b / k ((l1 x l2) x (l3 x l4)) . e, l_i the rods and e the horizontal normal of the bars.
+        """
+        return ca.repmat(g.arm_length * g.rod_length, 4, 1), g.bar_length / g.amplification * g.rod_length**4
+
+    def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
+        """Adds cos psi: 0 where the parallelogram, a rectangle at theta = 0, lies flat and may fold the other way."""
+        if name == "pi_joint":
+            model = self.model()
+            return ca.cos(model.pose[3] / model.g.amplification)
+        return super().margin_components(name, bounds, characteristic_length)
+
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
+        """Arms, rods, halves, bars, tool, payload."""
+        i, psi, halves = self.inertia, pose[3] / g.amplification, ("half 1", "half 2")
+        half = self.half_bar(psi, g)
+        bodies = self.limb_bodies(pose, joints, g, i.rod_mass, [halves[int(side > 0)] for side in _HALF])
+        for link, mass, side in zip(halves, i.half_masses, (-1, 1), strict=True):
+            bodies.particles.append(Particle(link, mass, pose[:3] + side * half))
+        bodies.particles.append(Particle("bars", i.bars_mass + payload, pose[:3]))
+        bodies.rotors.extend([Rotor(i.bars_inertia, psi), Rotor(i.tool, pose[3])])
+        return bodies
+
+    @classmethod
+    def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
+        """Base, arms, rod pairs by their midlines, the halves, a bar, the tool."""
+        ends, half = cls.platform_points(pose, g), cls.half_bar(pose[3] / g.amplification, g)
+        pointer = pose[:3] + g.platform_radius / 2 * ca.vertcat(ca.cos(pose[3]), ca.sin(pose[3]), 0)
+        lines = cls.limb_lines(pose, joints, g)
+        lines["half 1"] = ca.horzcat(ends[:, 0], pose[:3] - half, ends[:, 1])
+        lines["half 2"] = ca.horzcat(ends[:, 2], pose[:3] + half, ends[:, 3])
+        lines["bar"] = ca.horzcat(pose[:3] - half, pose[:3] + half)
+        return lines | {"tool": ca.horzcat(pose[:3], pointer)}
+
+    # The forward model.
+
+    def _candidates(self, joints: Array, every: bool) -> tuple[Array, Array]:
+        """(k, 4) joints -> rows (j,) and poses (j, 4) close to all that have these joints."""
+
+        (centres,) = evaluate(self.program(_spheres), joints)
+        g = self.geometry
+        rows, halves = candidates(Halves(centres / g.rod_length, g.bar_length / g.rod_length), every)
+        between = (halves[:, 1, :2] - halves[:, 0, :2]) @ [1, 1j] * np.exp(-1j * g.bar_angle)
+        return rows, np.column_stack([halves.mean(axis=1) * g.rod_length, g.amplification * np.angle(between)])
+
+    def working_forward(self, joints: Array) -> Array:
+        """(..., 4) -> (..., 4): the pose of home's assembly mode."""
+        joints = self._joints(joints)
+        flat = joints.reshape(-1, 4)
+        rows, poses = self._candidates(flat, every=False)
+        poses = polished(self, poses, flat[rows], 8)
+        result = joined_to_home(self, rows, poses, flat)
+        turn = TURN * self.geometry.amplification  # of the bars: the same place
+        result[:, 3] -= turn * np.round(result[:, 3] / turn)
+        return result.reshape(joints.shape)
+
+    def assembly_modes(self, joints: Array) -> Array:
+        """(4,) -> (k, 4), every isolated real pose with these joints, at most eight; the working one first."""
+        joints = self._one(joints)
+        _, poses = self._candidates(joints[None], every=True)
+        poses = polished(self, poses, np.broadcast_to(joints, poses.shape), 20)
+        poses = poses[np.isfinite(poses).all(axis=1)]
+        poses = poses[np.argsort(poses[:, 2], kind="stable")]
+        turn = np.exp(1j * poses[:, 3] / self.geometry.amplification)
+        apart = np.abs(turn[:, None] - turn) * self.geometry.bar_length / self.geometry.rod_length
+        apart = apart + np.linalg.norm(poses[:, None, :3] - poses[:, :3], axis=-1) / self.geometry.rod_length
+        poses = poses[distinct(apart, self._regularity(poses, np.broadcast_to(joints, poses.shape)))]
+        return working_first(poses, self.forward(joints), self.geometry.size)
+
+    def _regularity(self, poses: Array, joints: Array) -> Array:
+        """(k,) det J_x over its scale, in any mode."""
+        return evaluate(self.program(_regularity), poses, joints)[0][..., 0]
+
+
+def _spheres(robot: Par4, model: Model) -> Build:
+    g = model.g
+    centres = robot.limbs(g).elbows(model.joints) - robot.platform_points(ca.SX(4, 1), g)
+    return [model.joints], [(centres + robot.half_bar(ca.SX(0), g) @ ca.DM(_HALF).T).T]
+
+
+def _regularity(robot: Par4, model: Model) -> Build:
+    return [model.pose, model.joints], [determinant(model.j_x) / robot.scales(model.g)[1]]

@@ -1,0 +1,188 @@
+"""Planar robots with three legs (Khalil and Dombre 2002, 8.5.1, figure 8.4): 3-RPR, 3-PRR and 3-RRR.
+
+Pose [x, y, theta]. Given the joints, all three are the same problem: three platform points lie on three circles.
+`planar_forward` solves it.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import casadi as ca
+import numpy as np
+
+from kinematics.arrays import Array
+from kinematics.evaluation import evaluate
+from kinematics.machine import TURN, Bodies, GeometryRecord, InertiaRecord, Particle, Points, length
+from kinematics.mathematics import distinct
+from kinematics.model import Build, Mechanism, Model, joined_to_home
+from kinematics.robots.planar.forward import placements, rods_and_determinant
+from kinematics.robots.shared import ALIKE, twins
+
+_AROUND = [0, 1, 2, 0]
+_FAR = 1e60  # [m] or [rad], its fifth power still a double
+AZIMUTHS = (-TURN / 4, TURN / 12, 5 * TURN / 12)
+
+
+def triangle(radius: float, turn: float = 0.0) -> tuple[tuple[float, float], ...]:
+    """(3, 2) corners of an equilateral triangle, at -90, 30 and 150 deg + `turn`."""
+    corners = radius * np.exp(1j * (np.array(AZIMUTHS) + turn))
+    return tuple((float(c.real), float(c.imag)) for c in corners)
+
+
+@dataclass(frozen=True)
+class PlanarGeometry(GeometryRecord):
+    """Joint centres; the dimensions are assumptions of this project, as the chapter gives none.
+
+    Raises:
+        InvalidGeometry: besides what any geometry refuses: the platform points coincide; two legs are one.
+    """
+
+    base_points: tuple[tuple[float, ...], ...] = length(triangle(0.5), minimum=None, doc="A_i, legs' base joints")
+    platform_points: tuple[tuple[float, ...], ...] = length(
+        triangle(0.15), minimum=None, doc="B_i, in the platform's frame"
+    )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self._coincide(self.platform_points):
+            reason = "about a common one the platform turns freely"
+            raise self._invalid("platform_points", self.platform_points, f"points that do not all coincide: {reason}")
+        legs = np.column_stack([*self._drives(), self.platform_points])
+        if pair := twins(legs, self._size()):
+            reason = f"legs {pair[0]} and {pair[1]} share the drive too, det J_x is zero in every pose"
+            raise self._invalid("platform_points", self.platform_points, f"two points for two legs: {reason}")
+
+    def _size(self) -> float:
+        return float(max(np.abs(self.base_points).max(), np.abs(self.platform_points).max()))
+
+    def _coincide(self, points: Points) -> bool:
+        return bool(np.ptp(np.array(points), axis=0).max() <= ALIKE * self._size())
+
+    def _drives(self) -> list[Array]:
+        """Columns (3,) or (3, k) in metres that are equal for two legs where their rods or links are, at any B_i."""
+        return [np.array(self.base_points)]
+
+
+@dataclass(frozen=True)
+class PlanarInertia(InertiaRecord):
+    """A small table-top robot: an assumption of this project, not a datasheet. SI units.
+
+    Attributes:
+        drive: a prismatic drive's moving inertia as seen at its joint [kg].
+        link_mass: of each leg's link; where the link changes its length, half at each end.
+        platform_mass: in three equal particles at the B_i; the payload is a particle at the tool point.
+    """
+
+    drive: float = 1.0
+    link_mass: float = 0.3
+    platform_mass: float = 1.2
+
+
+class Planar(Mechanism):
+    """Three legs in the plane z = 0; what the three robots share."""
+
+    geometry: PlanarGeometry
+    inertia: PlanarInertia
+    pose_names = ("x", "y", "theta")
+    joint_names = ("q1", "q2", "q3")
+    rotations = (2,)
+
+    @property
+    def characteristic_length(self) -> float:
+        """Root mean square distance of the B_i from their centroid [m]."""
+        points = np.array(self.geometry.platform_points)
+        return float(np.sqrt(((points - points.mean(axis=0)) ** 2).sum(axis=1).mean()))
+
+    @staticmethod
+    def default_home(geometry: PlanarGeometry) -> tuple[float, ...]:
+        """The platform's centroid on the base's, not turned."""
+        base, platform = (np.mean(points, axis=0) for points in (geometry.base_points, geometry.platform_points))
+        return (*(base - platform).tolist(), 0.0)
+
+    @staticmethod
+    @abstractmethod
+    def circles(joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """Centres (3, 3), columns in the plane z = 0, and radii (3,) of the circles on which the B_i lie."""
+
+    @staticmethod
+    def base_points(g: SimpleNamespace) -> ca.SX:
+        """(3, 3) A_i, in the plane z = 0."""
+        return ca.vertcat(ca.reshape(g.base_points, 2, 3), ca.SX(1, 3))
+
+    @staticmethod
+    def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(3, 3) B_i, in the plane z = 0."""
+        c, s = ca.cos(pose[2]), ca.sin(pose[2])
+        turned = ca.vertcat(ca.horzcat(c, -s), ca.horzcat(s, c)) @ ca.reshape(g.platform_points, 2, 3)
+        return ca.vertcat(turned + ca.repmat(pose[:2], 1, 3), ca.SX(1, 3))
+
+    @staticmethod
+    def determinant_scale(g: SimpleNamespace) -> ca.SX:
+        """3/2 sqrt(3) rho, rho as in `characteristic_length`: no determinant of three unit forces' lines is larger.
+
+        By Hadamard's inequality on columns of squared sums 3 (both forces) and 3 rho^2 (moments about the centroid).
+        """
+        points = ca.reshape(g.platform_points, 2, 3)
+        return 1.5 * ca.sqrt(ca.sumsqr(points - ca.repmat(ca.sum2(points) / 3, 1, 3)))
+
+    def platform_bodies(self, pose: ca.SX, g: SimpleNamespace, payload: float | ca.SX, bodies: Bodies) -> None:
+        """Adds platform and payload."""
+        points, share = self.platform_points(pose, g), self.inertia.platform_mass / 3
+        bodies.particles.extend(Particle("platform", share, points[:, i]) for i in range(3))
+        bodies.particles.append(Particle("platform", payload, ca.vertcat(pose[:2], 0)))
+
+    @classmethod
+    def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
+        """Base, the legs from base joint over the circle's centre to the platform, platform, tool."""
+        base, ends, centres = cls.base_points(g), cls.platform_points(pose, g), cls.circles(joints, g)[0]
+        lines = {"base": base[:, _AROUND], "platform": ends[:, _AROUND]}
+        lines |= {f"leg {i + 1}": ca.horzcat(base[:, i], centres[:, i], ends[:, i]) for i in range(3)}
+        return lines | {"tool": ca.horzcat(ca.sum2(ends) / 3, ca.vertcat(pose[:2], 0))}
+
+    # The forward model.
+
+    def _problem(self, joints: Array) -> tuple[Array, Array, Array]:
+        """(k, 3) joints -> complex centres (k, 3), radii (k, 3), and the platform's points (3,)."""
+
+        x, y, radii = evaluate(self.program(_circles), _bounded(joints))
+        return x + 1j * y, radii, np.array(self.geometry.platform_points) @ [1, 1j]
+
+    def working_forward(self, joints: Array) -> Array:
+        """(..., 3) -> (..., 3): the pose of home's assembly mode.
+
+        Far from home several modes may be joined to it: the nearest is given, and `near` says which one is meant.
+        """
+        joints = self._joints(joints)
+        flat = _bounded(joints).reshape(-1, 3)
+        rows, p, theta = placements(*self._problem(flat))
+        return joined_to_home(self, rows, _poses(p, theta), flat).reshape(joints.shape)
+
+    def assembly_modes(self, joints: Array) -> Array:
+        """(3,) -> (k, 3), every isolated real pose with these joints, at most six; the nearest to `home` first."""
+        joints = self._one(joints)
+        centres, radii, points = self._problem(joints[None])
+        rows, p, theta = placements(centres, radii, points, every=True)
+        det = rods_and_determinant(p, theta, centres[rows], points)[2]
+        length = self.characteristic_length
+        turn = np.exp(1j * theta)
+        apart = np.abs(p[:, None] - p) / length + np.abs(turn[:, None] - turn)
+        kept = distinct(apart, det / (length * np.prod(radii) + 1e-300))
+        away = np.abs(p - complex(*self.home[:2])) / length + np.abs(turn - np.exp(1j * self.home[2]))
+        return _poses(p, theta)[sorted(kept, key=lambda i: away[i])]
+
+
+def _circles(robot: Planar, model: Model) -> Build:
+    centres, radii = robot.circles(model.joints, model.g)
+    return [model.joints], [centres[0, :].T, centres[1, :].T, radii + 0 * model.joints]
+
+
+def _bounded(rows: Array) -> Array:
+    """(..., 3) with NaN in place of rows that are infinite, or so large that squares and products would overflow."""
+    return np.where((np.abs(rows) < _FAR).all(axis=-1, keepdims=True), rows, np.nan)
+
+
+def _poses(p: Array, theta: Array) -> Array:
+    return np.stack([p.real, p.imag, theta], axis=-1)

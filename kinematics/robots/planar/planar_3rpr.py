@@ -1,0 +1,88 @@
+"""Planar 3-RPR (Khalil and Dombre 2002, figure 8.4a)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import casadi as ca
+
+from kinematics.machine import TURN, Bodies, JointRanges, Pair, Particle, Rotor, length
+from kinematics.model import FviBounds, Mode
+from kinematics.robots.planar.planar import Planar, PlanarGeometry, PlanarInertia, triangle
+
+
+@dataclass(frozen=True)
+class Planar3RPRGeometry(PlanarGeometry):
+    """With the platform a quarter turn ahead: similar triangles side by side would make home singular.
+
+    Raises:
+        InvalidGeometry: besides what any planar robot refuses: the base points coincide.
+    """
+
+    platform_points: tuple[tuple[float, ...], ...] = length(
+        triangle(0.15, TURN / 4), minimum=None, doc="B_i, in the platform's frame"
+    )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self._coincide(self.base_points):
+            reason = "about a common one the robot turns freely"
+            raise self._invalid("base_points", self.base_points, f"points that do not all coincide: {reason}")
+
+
+@dataclass(frozen=True)
+class Planar3RPRRanges(JointRanges):
+    """Cylinders, in metres: an assumption of this project. All pivots turn freely."""
+
+    joints: Pair | tuple[Pair, ...] = (0.2, 0.9)
+
+
+class Planar3RPR(Planar):
+    """Pose [x, y, theta], joints q1..q3, the leg lengths |A_i B_i|: prismatic drives between passive pivots."""
+
+    Geometry = Planar3RPRGeometry
+    Inertia = PlanarInertia
+    Ranges = Planar3RPRRanges
+    geometry: Planar3RPRGeometry
+    joint_units = ("m",) * 3
+    fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=200.0, speed=0.3, force=50.0)
+
+    @staticmethod
+    def circles(joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """About the base joints."""
+        return Planar.base_points(g), joints
+
+    @staticmethod
+    def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """q_i - |A_i B_i|: J_q is the identity, J_x the legs as lines."""
+        return joints - Planar3RPR.leg_lengths(pose, g)
+
+    @staticmethod
+    def inverse_closed_form(pose: ca.SX, g: SimpleNamespace, mode: Mode) -> ca.SX:  # noqa: ARG004
+        """Unique, as a length is positive."""
+        return Planar3RPR.leg_lengths(pose, g)
+
+    @staticmethod
+    def leg_lengths(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(3,); inf where the pose is infinite or a length's square overflows."""
+        legs = Planar.platform_points(pose, g) - Planar.base_points(g)
+        return ca.sqrt(ca.sum1(legs * legs)).T
+
+    @staticmethod
+    def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """The leg itself: it reaches everything but its own base joint [m]."""
+        return Planar3RPR.leg_lengths(pose, g)
+
+    @staticmethod
+    def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """1 for J_q; `determinant_scale` for det J_x."""
+        return ca.SX.ones(3), Planar.determinant_scale(g)
+
+    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
+        """Drives that the joints move; platform and half of each leg, the other half staying at its base joint."""
+        i, ends, bodies = self.inertia, self.platform_points(pose, g), Bodies(self.inertia.rod_middle)
+        bodies.rotors.extend(Rotor(i.drive, joints[k]) for k in range(3))
+        bodies.particles.extend(Particle("platform", i.link_mass / 2, ends[:, k]) for k in range(3))
+        self.platform_bodies(pose, g, payload, bodies)
+        return bodies

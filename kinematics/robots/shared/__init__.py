@@ -1,0 +1,32 @@
+"""What several mechanisms have in common: rotary limbs, paired rods, limbs that coincide."""
+
+from kinematics.robots.shared.coincident_limbs import ALIKE, HalvesGeometry, twins
+from kinematics.robots.shared.paired_rods import RodLevel, outline
+from kinematics.robots.shared.rotary_limbs import (
+    ArmInertia,
+    ArmRanges,
+    Limbs,
+    RotaryLimbs,
+    central_limbs,
+    columns,
+    height_in_reach,
+    radial_directions,
+    upright_limbs,
+)
+
+__all__ = [
+    "ALIKE",
+    "ArmInertia",
+    "ArmRanges",
+    "HalvesGeometry",
+    "Limbs",
+    "RodLevel",
+    "RotaryLimbs",
+    "central_limbs",
+    "columns",
+    "height_in_reach",
+    "outline",
+    "radial_directions",
+    "twins",
+    "upright_limbs",
+]

@@ -1,0 +1,94 @@
+"""The rod-level view: a limb of two parallel rods holds an orientation only as long as J_int is regular.
+
+Each rod's length gives one equation between the actuators and all freedoms of the bodies it carries, tilts included:
+J_l q' = J_r v. Combining the rows (sums and differences of a limb's two rods) and the columns makes it block
+triangular, and the lower right block tells the internal singularities. Method and names: Krut et al. 2006, (47)-(58).
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from types import SimpleNamespace
+from typing import ClassVar, NamedTuple
+
+import casadi as ca
+import numpy as np
+
+from kinematics.arrays import Array
+from kinematics.model import FviBounds, Mechanism, Model
+
+
+class BlockTriangular(NamedTuple):
+    """[J_q; 0] q' = [J_x J_int_x; 0 J_int] [x'; v_int]; (50)."""
+
+    j_q: Array
+    j_x: Array
+    j_int_x: Array
+    j_int: Array
+
+
+class RodLevel(Mechanism):
+    """A mechanism that also states the length of each single rod."""
+
+    rod_velocities: ClassVar[tuple[str, ...]]  # what v holds
+    row_combinations: ClassVar[np.ndarray]  # M of (51)
+    column_combinations: ClassVar[np.ndarray]  # P of (51)
+    margins = (*Mechanism.margins, "internal_determinant")
+
+    @staticmethod
+    @abstractmethod
+    def rod_closure(pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(k,) each rod's own `closure` after a small displacement in the directions of `rod_velocities`."""
+
+    @abstractmethod
+    def internal_determinant_symbolic(self) -> ca.SX:
+        """det J_int, up to a sign, over what makes it dimensionless in [-1, 1]."""
+
+    def rod_system_symbolic(self) -> tuple[ca.SX, ca.SX]:
+        """J_l (k, m) and J_r (k, v) of (49) at a pose, by differentiation of the rods' lengths."""
+        model = self.model()
+        displacement = ca.SX.sym("displacement", len(self.rod_velocities))
+        rods = self.rod_closure(model.pose, displacement, model.joints, model.g)
+        j_l, j_r = ca.jacobian(rods, model.joints), -ca.jacobian(rods, displacement)
+        j_l, j_r = (ca.substitute(j, displacement, 0 * displacement) for j in (j_l, j_r))
+        return model.at_pose(j_l), model.at_pose(j_r)
+
+    def rod_system(self, pose: Array) -> tuple[Array, Array]:
+        """J_l (..., k, m) and J_r (..., k, v) with J_l q' = J_r v; (49). Redundant drives make k > v."""
+        j_l, j_r = self._evaluate(_rod_system, pose)
+        return j_l, j_r
+
+    def block_triangular(self, pose: Array) -> BlockTriangular:
+        """The system of `rod_system` after (51) and (52)."""
+        return BlockTriangular(*self._evaluate(_blocks, pose))
+
+    def internal_determinant(self, pose: Array) -> Array:
+        """(...,) det J_int, dimensionless in [-1, 1], sign kept; 0 is an internal singularity."""
+        return self._evaluate(_internal_determinant, pose)[0][..., 0]
+
+    def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
+        """Adds |det J_int|, normalised."""
+        if name == "internal_determinant":
+            return ca.fabs(self.internal_determinant_symbolic())
+        return super().margin_components(name, bounds, characteristic_length)
+
+
+def _rod_system(robot: RodLevel, _: Model) -> list[ca.SX]:
+    return list(robot.rod_system_symbolic())
+
+
+def _internal_determinant(robot: RodLevel, _: Model) -> list[ca.SX]:
+    return [robot.internal_determinant_symbolic()]
+
+
+def _blocks(robot: RodLevel, _: Model) -> list[ca.SX]:
+    j_l, j_r = robot.rod_system_symbolic()
+    m, n = len(robot.joint_names), len(robot.pose_names)
+    left = ca.DM(robot.row_combinations) @ j_l
+    right = ca.DM(robot.row_combinations) @ j_r @ ca.DM(robot.column_combinations)
+    return [left[:m, :], right[:m, :n], right[:m, n:], right[m:, n:]]
+
+
+def outline(start: ca.SX, end: ca.SX, half: ca.SX) -> ca.SX:
+    """(3, 5) the parallelogram of a limb's two rods, `half` (3,) to either side of the line between two points."""
+    return ca.horzcat(start - half, end - half, end + half, start + half, start - half)

@@ -1,0 +1,35 @@
+"""From what a study says to the objects that compute."""
+
+from studies.building.inside_region import leaving
+from studies.building.load import load_study
+from studies.building.mechanisms import mechanism_class
+from studies.building.objects import (
+    approach_limits,
+    drive_file_names,
+    drive_of,
+    home_of,
+    limits_of,
+    path_of,
+    problem_of,
+    region_of,
+    require_cycle_inside,
+    robot_of,
+    timing_of,
+)
+
+__all__ = [
+    "approach_limits",
+    "drive_file_names",
+    "drive_of",
+    "home_of",
+    "leaving",
+    "limits_of",
+    "load_study",
+    "mechanism_class",
+    "path_of",
+    "problem_of",
+    "region_of",
+    "require_cycle_inside",
+    "robot_of",
+    "timing_of",
+]

@@ -1,0 +1,214 @@
+"""What a study may say of its mechanism: the keys that follow from it, and the faults that only it shows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from studies.building.hardware import hardware_faults, hardware_tables, joint_unit, subtable
+from studies.building.mechanisms import GeometryField, geometry_fields, shape
+from studies.errors import KeyPath
+from studies.study_file import (
+    REGION_KINDS,
+    BoxTable,
+    CertifyTable,
+    CycleTable,
+    CylinderTable,
+    Dimension,
+    Key,
+    OptimiseTable,
+    RequirementTable,
+    Study,
+    SumTable,
+    Table,
+    TrajectoryTable,
+    WaypointPathTable,
+    WaypointTable,
+    table_of,
+)
+
+if TYPE_CHECKING:
+    from kinematics import Mechanism
+
+_PER_JOINT = ("limits", "approach", "drive")  # tables of the trajectory
+_TURN = 2 * math.pi * (1 + 1e-12)  # converting degrees rounds
+
+
+def study_table(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> Table:
+    """The keys of a study of `mechanism`; the region's follow from its kind in `raw`."""
+    fields = geometry_fields(mechanism)
+    lengths = Key("a list out of", choices=_lengths(fields))
+    margins = Key("one of", choices=mechanism.margins)
+    optimise = {
+        "variables": Table({name: _bounds(field) for name, field in fields.items()}),
+        "sums": table_of(SumTable, rows=True).updated({"fields": lengths}),
+    }
+    return table_of(Study).updated(
+        {
+            "geometry": Table({name: _dimensions(field) for name, field in fields.items()}),
+            **hardware_tables(mechanism),
+            "home": _home_table(mechanism),
+            "region": _region_table(mechanism, raw.get("region")),
+            "optimise": table_of(OptimiseTable).updated(optimise),
+            "certify": table_of(CertifyTable).updated({"margins": Key("a list out of", choices=mechanism.margins)}),
+            "requirement": table_of(RequirementTable, rows=True).updated({"margin": margins}),
+            "trajectory": _trajectory_table(mechanism.pose_names, len(mechanism.joint_names)),
+        }
+    )
+
+
+def _trajectory_table(pose_names: Sequence[str], joints: int) -> Table:
+    """The waypoints' coordinates, and only what the pose has of the cycle's angles; in a plane there is no cycle."""
+    lacking = {
+        "turn": not {"theta", "yaw"} & set(pose_names),
+        "start_angle": not {"theta", "yaw"} & set(pose_names),
+        "tilt": not {"roll", "pitch"} <= set(pose_names),
+    }
+    cycle = Table({name: key for name, key in table_of(CycleTable).keys.items() if not lacking.get(name)})
+    coordinates = {name: Key("a finite number", _pose_dimension(name), place=True) for name in pose_names}
+    waypoint = table_of(WaypointTable, rows=True).updated(coordinates)
+    path = table_of(WaypointPathTable).updated({"waypoint": waypoint})
+    trajectory = table_of(TrajectoryTable).updated({"path": path})
+    trajectory = trajectory.updated({name: _counted(trajectory.keys[name], joints) for name in _PER_JOINT})
+    if "z" in pose_names:
+        return trajectory.updated({"path": replace(path, other="[trajectory.cycle]"), "cycle": cycle})
+    return Table({name: key for name, key in trajectory.keys.items() if name != "cycle"})
+
+
+def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:
+    """The paths of `data` (in SI) at odds with `mechanism`; what the models reject is left to them."""
+    fields = geometry_fields(mechanism)
+    for name, value in subtable(data, "geometry").items():
+        field = fields[name]
+        if shape(value) != field.shape or not all(field.allows(n, n) for n in _numbers(value)):
+            yield ("geometry", name)
+    yield from hardware_faults(data, mechanism)
+    yield from _uncounted(subtable(data, "trajectory"), len(mechanism.joint_names))
+    joints = subtable(data, "home").get("joints")
+    if isinstance(joints, tuple) and len(joints) != len(mechanism.joint_names):
+        yield ("home", "joints")
+    if isinstance(data.get("region"), dict):
+        yield from _region_faults(data["region"], mechanism)
+    optimise = subtable(data, "optimise")
+    for name, bounds in subtable(optimise, "variables").items():
+        field = fields[name]
+        pairs = bounds if field.shape and isinstance(bounds, tuple) else (bounds,)
+        ends = [_numbers(pair) for pair in pairs]
+        if len(ends) != math.prod(field.shape) or any(
+            len(pair) != 2 or not field.allows(pair[0], pair[1]) for pair in ends
+        ):
+            yield ("optimise", "variables", name)
+    for i, names in _rows(optimise, "sums", "fields"):
+        if isinstance(names, tuple) and not set(map(str, names)) <= set(_lengths(fields)):
+            yield ("optimise", "sums", i, "fields")
+    certified = subtable(data, "certify").get("margins")
+    if isinstance(certified, tuple) and not set(map(str, certified)) <= set(mechanism.margins):
+        yield ("certify", "margins")
+    for i, margin in _rows(data, "requirement", "margin"):
+        if margin not in mechanism.margins:
+            yield ("requirement", i, "margin")
+
+
+def _counted(node: Key | Table, joints: int) -> Key | Table:
+    """With the number of joints in its words."""
+    if isinstance(node, Key):
+        return replace(node, expected=node.expected.replace("a joint", f"a joint of the {joints}"))
+    return node.updated({name: _counted(inner, joints) for name, inner in node.keys.items()})
+
+
+def _uncounted(trajectory: Mapping[str, Any], joints: int) -> Iterator[KeyPath]:
+    """Lists of one value a joint that are of another length; a range is a pair of numbers, not a list."""
+    for table in _PER_JOINT:
+        for name, value in subtable(trajectory, table).items():
+            several = isinstance(value, tuple) and (name != "position" or any(isinstance(v, tuple) for v in value))
+            if several and len(value) != joints:
+                yield ("trajectory", table, name)
+
+
+def _region_faults(region: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:
+    if region.get("kind") not in REGION_KINDS:
+        return
+    for name in _coordinates(mechanism, region["kind"]):
+        interval = region.get(name)
+        if interval is None:
+            yield ("region", name)
+        elif _within_a_turn(mechanism, name):
+            angles = _numbers(interval)
+            if angles and angles[-1] - angles[0] > _TURN:
+                yield ("region", name)
+
+
+def _home_table(mechanism: type[Mechanism]) -> Table:
+    count = len(mechanism.joint_names)
+    joints = Key(f"a finite number for each of {count} joints", joint_unit(mechanism), place=True)
+    return Table(
+        {name: Key("a finite number", _pose_dimension(name), place=True) for name in mechanism.pose_names}
+        | {"joints": joints}
+    )
+
+
+def _region_table(mechanism: type[Mechanism], region: object) -> Table:
+    kind = region.get("kind") if isinstance(region, dict) else None
+    own = table_of(BoxTable if kind == "box" else CylinderTable)
+    return own.updated({name: _coordinate(mechanism, name) for name in _coordinates(mechanism, kind)})
+
+
+def _coordinates(mechanism: type[Mechanism], kind: object) -> tuple[str, ...]:
+    """The pose coordinates that a region of this kind gives one by one."""
+    disc = ("x", "y") if kind == "cylinder" else ()
+    return tuple(name for name in mechanism.pose_names if name not in disc)
+
+
+def _coordinate(mechanism: type[Mechanism], name: str) -> Key:
+    reach = ", at most a turn apart" if _within_a_turn(mechanism, name) else ""
+    return Key(f"a number, or low < high{reach}", _pose_dimension(name), place=True)
+
+
+def _within_a_turn(mechanism: type[Mechanism], name: str) -> bool:
+    return _pose_dimension(name) is Dimension.ANGLE and not mechanism.counts_turns
+
+
+def _pose_dimension(name: str) -> Dimension:
+    return Dimension.LENGTH if name in {"x", "y", "z"} else Dimension.ANGLE
+
+
+def _dimensions(field: GeometryField) -> Key:
+    count = " x ".join(map(str, field.shape)) or "a"
+    plural = "s" if field.shape else ""
+    return Key(f"{count} finite number{plural}{_condition(field)}", Dimension(field.dimension), place=_is_place(field))
+
+
+def _bounds(field: GeometryField) -> Key:
+    pairs = f", one list of {math.prod(field.shape)} such pairs, entry by entry" if field.shape else ""
+    return Key(f"low < high{_condition(field)}{pairs}", Dimension(field.dimension), place=_is_place(field))
+
+
+def _is_place(field: GeometryField) -> bool:
+    return field.dimension == Dimension.LENGTH and field.minimum is None
+
+
+def _condition(field: GeometryField) -> str:
+    if field.dimension == Dimension.LENGTH_PER_TURN:
+        return ", 0 left out"
+    if field.minimum is None:
+        return ""
+    return f", above {field.minimum:g} m" if field.minimum else ", above 0"
+
+
+def _lengths(fields: Mapping[str, GeometryField]) -> tuple[str, ...]:
+    return tuple(name for name, field in fields.items() if field.dimension == Dimension.LENGTH)
+
+
+def _rows(data: Mapping[str, Any], name: str, key: str) -> Iterator[tuple[int, Any]]:
+    rows = data.get(name)
+    for i, row in enumerate(rows if isinstance(rows, tuple) else ()):
+        if isinstance(row, dict) and key in row:
+            yield i, row[key]
+
+
+def _numbers(value: object) -> list[float]:
+    if isinstance(value, tuple):
+        return [number for entry in value for number in _numbers(entry)]
+    return [value] if isinstance(value, int | float) else []

@@ -1,0 +1,87 @@
+"""The masses, drives and joint ranges that a study gives its mechanism: keys, faults, and the records that compute."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import Field, fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinematics import DriveTrain, InvalidValue
+from studies.building.mechanisms import mechanism_class
+from studies.errors import KeyPath
+from studies.study_file import Dimension, InertiaTable, Key, Table, table_of
+
+if TYPE_CHECKING:
+    from kinematics import InertiaRecord, JointRanges, Mechanism
+    from studies.study_file import Study
+
+_WORDS = {
+    "rest": "three finite coordinates",
+    "passive": "two angles above 0, at most half a turn: at the drives' ends of the rods, at the platform's",
+    "rod_middle": "a share from 0 to 1",
+    "screw_lead": "a number above 0",
+}
+_JOINTS: dict[tuple[str, ...], Dimension] = {("m",): Dimension.LENGTH, ("rad",): Dimension.ANGLE}
+
+
+def inertia_of(study: Study) -> InertiaRecord:
+    """The mechanism's masses with the study's own in their places."""
+    masses: dict[str, Any] = dict(study.inertia.masses)
+    drive_train = DriveTrain(**study.inertia.drive_train.model_dump(exclude_none=True))
+    return mechanism_class(study.mechanism).Inertia(**masses, drive_train=drive_train)
+
+
+def ranges_of(study: Study) -> JointRanges:
+    """The mechanism's joint ranges with the study's own in their places."""
+    ranges: dict[str, Any] = dict(study.ranges)
+    return mechanism_class(study.mechanism).Ranges(**ranges)
+
+
+def hardware_tables(mechanism: type[Mechanism]) -> dict[str, Table]:
+    """The keys of `[inertia]` and `[ranges]`."""
+    masses = {f.name: _key(f, mechanism.Inertia.dimensions, " >= 0") for f in fields(mechanism.Inertia)}
+    ranges = {f.name: _key(f, mechanism.Ranges.dimensions) for f in fields(mechanism.Ranges)}
+    joints = Key(
+        f"finite low < high, once or for each of {len(mechanism.joint_names)} joints", joint_unit(mechanism), place=True
+    )
+    return {
+        "inertia": Table({**masses, **table_of(InertiaTable).keys}),
+        "ranges": Table(ranges | {"joints": joints}),
+    }
+
+
+def joint_unit(mechanism: type[Mechanism]) -> Dimension:
+    """What all joints measure; none where they differ."""
+    return _JOINTS.get(tuple(sorted(set(mechanism.joint_units))), Dimension.NONE)
+
+
+def _key(field: Field[Any], dimensions: Mapping[str, str], more: str = "") -> Key:
+    shape = np.shape(field.default)  # type: ignore[arg-type]
+    dimension = Dimension(dimensions.get(field.name, "none"))
+    count = f"{shape[0]} finite numbers" if shape else "a finite number"
+    return Key(_WORDS.get(field.name, f"{count}{more}"), dimension, place=not more)
+
+
+def hardware_faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:
+    """The paths of `data` (in SI) that the mechanism's records refuse, each value by itself."""
+    count, inertia = len(mechanism.joint_names), subtable(data, "inertia")
+    masses = {name: value for name, value in inertia.items() if name != "drive_train"}
+    of_records: list[tuple[KeyPath, type[Any], Mapping[str, Any]]] = [
+        (("ranges",), mechanism.Ranges, subtable(data, "ranges")),
+        (("inertia",), mechanism.Inertia, masses),
+        (("inertia", "drive_train"), DriveTrain, subtable(inertia, "drive_train")),
+    ]
+    for path, record, values in of_records:
+        for name, value in values.items():
+            try:
+                record(**{name: value}).check(count)
+            except InvalidValue:
+                yield (*path, name)
+
+
+def subtable(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """A table of `data`; empty where there is none, or something else."""
+    table = data.get(name)
+    return table if isinstance(table, dict) else {}

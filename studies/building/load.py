@@ -1,0 +1,158 @@
+"""From a `study.toml` to a checked `Study`, with every fault of the file reported at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pydantic import ValidationError
+
+from kinematics import InvalidGeometry
+from studies.building.against_mechanism import faults, study_table
+from studies.building.mechanisms import mechanism_class, mechanism_names
+from studies.building.objects import path_of
+from studies.errors import KeyPath, Problem, StudyError, spelled
+from studies.study_file import Conversion, Key, Study, Table, TomlFile, WaypointTable, read_toml, table_of
+from trajectory import InvalidPath, read_waypoints
+
+if TYPE_CHECKING:
+    from kinematics import Mechanism
+
+# Without a known mechanism nothing can be said about these.
+_OF_THE_MECHANISM = ("geometry", "inertia", "ranges", "region", "home", "optimise", "certify", "requirement")
+
+
+def load_study(path: Path) -> Study:
+    """Read the study file at `path`; all values of the result are in SI and radians.
+
+    Raises StudyError, which holds every fault with its key and line.
+    """
+    file = read_toml(path)
+    mechanism = _mechanism(file.data.get("mechanism"))
+    conversion = Conversion()
+    raw = file.data
+    if mechanism:
+        table = study_table(mechanism, raw)
+        data = conversion.to_si(raw, table)
+        wrong = set(faults(data, mechanism))
+    else:
+        table = table_of(Study).updated({"mechanism": Key("one of", choices=mechanism_names())})
+        data = conversion.to_si(_without_the_mechanism_s(raw), table)
+        wrong = {("mechanism",)}
+        conversion.reported.update((name,) for name in _OF_THE_MECHANISM)
+    try:
+        study = Study.model_validate(data | {"name": path.resolve().parent.name})
+    except ValidationError as error:
+        wrong.update(_invalid(error, table))
+    problems = _problems(file, table, conversion, wrong)
+    if problems:
+        raise StudyError(problems)
+    assert mechanism is not None
+    try:
+        mechanism.Geometry(**study.geometry)
+    except InvalidGeometry as error:
+        key = conversion.spelling.get(("geometry", error.field), ("geometry",))
+        raise StudyError([file.problem(key, spelled(file.value(key)), error.expected)]) from error
+    return _with_waypoints(study, file, mechanism.pose_names)
+
+
+def _with_waypoints(study: Study, file: TomlFile, pose_names: tuple[str, ...]) -> Study:
+    """The study with the waypoints of the file that it names, so that they belong to its digest.
+
+    Raises StudyError where a waypoint of the study itself does not fit, WaypointFileError where one of the file.
+    """
+    if study.trajectory is None or study.trajectory.path is None:
+        return study
+    path, key = study.trajectory.path, ("trajectory", "path")
+    if (path.file is None) == (not path.waypoint):
+        found = "neither a file nor waypoints" if path.file is None else "a file and waypoints"
+        raise StudyError([file.problem(key, found, "one of the two")])
+    if path.file is not None:
+        beside = file.path.parent / path.file
+        if beside.suffix.lower() != ".csv" or not beside.is_file():
+            what = "no such file" if not beside.exists() else "no CSV file"
+            found = f"{spelled(path.file)}, {what}"
+            raise StudyError([file.problem((*key, "file"), found, "a .csv file of waypoints beside the study")])
+        read = read_waypoints(beside, pose_names)
+        rows = zip(read.poses, (0.0, *read.blends, 0.0), strict=True)
+        waypoints = tuple(
+            WaypointTable(
+                coordinates={n: v for n, v in zip(pose_names, pose, strict=True) if v is not None}, blend=blend
+            )
+            for pose, blend in rows
+        )
+        path = path.model_copy(update={"waypoint": waypoints})
+        return study.model_copy(update={"trajectory": study.trajectory.model_copy(update={"path": path})})
+    if len(path.waypoint) == 1:
+        raise StudyError([file.problem((*key, "waypoint"), "one waypoint", "two or more")])
+    try:
+        path_of(study.trajectory, pose_names)
+    except InvalidPath as error:
+        row = file.data["trajectory"]["path"]["waypoint"][error.pose - 1]
+        own = (f"{name} = {spelled(value)}" for name, value in row.items() if name.split("_")[0] == error.field)
+        found = next(own, f"{error.field} {error.found}")
+        raise StudyError([file.problem((*key, "waypoint", error.pose - 1), found, error.expected)]) from error
+    return study
+
+
+def _without_the_mechanism_s(raw: dict[str, Any]) -> dict[str, Any]:
+    """The tables and rows that do not follow from the mechanism."""
+    data = {key: raw[key] for key in raw if key not in _OF_THE_MECHANISM}
+    trajectory = data.get("trajectory")
+    if isinstance(trajectory, dict) and isinstance(trajectory.get("path"), dict):
+        path = {key: value for key, value in trajectory["path"].items() if key != "waypoint"}
+        data["trajectory"] = {**trajectory, "path": path}
+    return data
+
+
+def _mechanism(name: object) -> type[Mechanism] | None:
+    return mechanism_class(name) if isinstance(name, str) and name in mechanism_names() else None
+
+
+def _invalid(error: ValidationError, table: Table) -> Iterator[KeyPath]:
+    """The SI paths that the models reject."""
+    for detail in error.errors(include_url=False, include_context=False, include_input=False):
+        path: list[str | int] = []
+        node = table
+        for part in detail["loc"]:
+            # The rest of pydantic's path tells which variant of a union failed, or which entry of an array.
+            if isinstance(part, int) and node.rows:
+                path.append(part)
+            elif isinstance(part, str) and part in node.keys:
+                path.append(part)
+                inner = node.keys[part]
+                if isinstance(inner, Key):
+                    break
+                node = inner
+        # A region of no known kind is rejected as a whole.
+        yield (*path, "kind") if detail["type"].startswith("union_tag") else tuple(path)
+
+
+def _problems(file: TomlFile, table: Table, conversion: Conversion, wrong: set[KeyPath]) -> list[Problem]:
+    problems = [file.problem(f.path, f.found, f.expected) for f in conversion.findings]
+    told = {finding.path for finding in conversion.findings}
+    for path in sorted(wrong, key=str):
+        if path in conversion.reported and path not in conversion.spelling:
+            continue  # a misspelt key is not missing as well
+        spelling = conversion.spelling.get(path, path)
+        if spelling in told:
+            continue
+        try:
+            value: Any = file.value(spelling)
+            found = spelled(value)
+        except LookupError:
+            value, found = None, "nothing"
+        node = _node(table, path)
+        suffix = str(spelling[-1])[len(str(path[-1])) + 1 :]
+        expected = node.describe(suffix, value) if isinstance(node, Key) else node.describe(value)
+        problems.append(file.problem(spelling, found, expected))
+    return problems
+
+
+def _node(table: Table, path: KeyPath) -> Key | Table:
+    node: Key | Table = table
+    for part in path:
+        if isinstance(part, str) and isinstance(node, Table):
+            node = node.keys[part]
+    return node

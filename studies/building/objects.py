@@ -1,0 +1,219 @@
+"""From what a study says to the objects that compute."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path as FilePath
+from typing import Any
+
+import numpy as np
+
+from design import Bounds, Box, Cylinder, Problem, Region, Requirement, SumLimit
+from kinematics import Array, FviBounds, GeometryRecord, InvalidValue, Mechanism, UnreachablePose, to_actuators
+from studies.building.hardware import inertia_of, ranges_of
+from studies.building.inside_region import leaving
+from studies.building.mechanisms import mechanism_class
+from studies.errors import HomeOutOfReach, StudyError
+from studies.study_file import (
+    ApproachTable,
+    CylinderTable,
+    DriveTable,
+    LimitsTable,
+    Study,
+    TrajectoryTable,
+    adept_cycle,
+    read_toml,
+    refused_field,
+    travelled,
+)
+from trajectory import Limits, Path, PoseBounds, RoundedPath, Setpoints, Timing
+from trajectory.drive_files import Drive, drive_files
+
+OBJECTIVE = "fvi"
+
+
+def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
+    """The study's mechanism, masses and joint ranges; `geometry` in place of the prototype with the study's changes."""
+    kind = mechanism_class(study.mechanism)
+    joints = None if study.home is None else study.home.joints
+    return kind(
+        geometry or kind.Geometry(**study.geometry),
+        inertia_of(study),
+        ranges_of(study),
+        home=_home_pose(study, kind.pose_names),
+        home_joints=joints,
+    )
+
+
+def _home_pose(study: Study, pose_names: Sequence[str]) -> list[float]:
+    """(n,) the study's own coordinates, the others in the middle of the region."""
+    given = {} if study.home is None else study.home.coordinates
+    middle = region_of(study).intervals
+    return [given.get(name, sum(middle[name]) / 2) for name in pose_names]
+
+
+def home_of(robot: Mechanism) -> Array:
+    """(n,) the pose that the robot works around.
+
+    Raises:
+        HomeOutOfReach: a limb cannot reach it.
+    """
+    home = np.asarray(robot.home, dtype=float)
+    try:
+        robot.require_reachable(home)
+    except UnreachablePose as error:
+        raise HomeOutOfReach(tuple(home.tolist()), error) from error
+    return home
+
+
+def region_of(study: Study) -> Region:
+    """The workspace."""
+    if isinstance(study.region, CylinderTable):
+        return Cylinder(study.region.radius, **study.region.coordinates)
+    return Box(**study.region.coordinates)
+
+
+def fvi_bounds_of(study: Study) -> FviBounds:
+    """What the FVI is measured against: the study's, or the mechanism's own."""
+    if study.fvi is None:
+        return mechanism_class(study.mechanism).fvi_bounds
+    f = study.fvi
+    return FviBounds(f.joint_speed, f.joint_effort, f.speed, f.force)
+
+
+def problem_of(study: Study) -> Problem:
+    """The synthesis that the study asks for; without an `[optimise]` table, one with nothing to vary."""
+    robot = robot_of(study)
+    own_length = study.fvi.characteristic_length if study.fvi else None
+    variables: list[Bounds] = []
+    sums: list[SumLimit] = []
+    if study.optimise is not None:
+        for name, intervals in study.optimise.variables.items():
+            pairs = [intervals] if isinstance(intervals[0], float | int) else intervals
+            variables += [Bounds(name, item, low, high) for item, (low, high) in enumerate(pairs)]
+        sums = [SumLimit(s.fields, s.at_most) for s in study.optimise.sums]
+    return Problem(
+        robot=robot,
+        objective=OBJECTIVE,
+        variables=tuple(variables),
+        requirements=tuple(Requirement(r.margin, r.at_least) for r in study.requirement),
+        sums=tuple(sums),
+        fvi_bounds=fvi_bounds_of(study),
+        characteristic_length=own_length or robot.characteristic_length,
+    )
+
+
+def path_of(asked: TrajectoryTable, pose_names: tuple[str, ...]) -> Path:
+    """The path there, of poses with these coordinates.
+
+    Raises:
+        InvalidPath: of a waypoint that does not fit.
+    """
+    if asked.cycle is not None:
+        return adept_cycle(asked.cycle.model_dump(), pose_names=pose_names)
+    assert asked.path is not None
+    waypoints = asked.path.waypoint
+    poses = tuple(tuple(w.coordinates.get(name) for name in pose_names) for w in waypoints)
+    return RoundedPath(pose_names, poses, tuple(w.blend for w in waypoints[1:-1]))
+
+
+def require_cycle_inside(study: Study, file: FilePath) -> None:
+    """Prove that the cycle's path stays where the geometry is verified.
+
+    Raises:
+        StudyError: it leaves the region, with the pose at which it does.
+    """
+    if study.trajectory is None:
+        return
+    names = mechanism_class(study.mechanism).pose_names
+    path = path_of(study.trajectory, names)
+    if (found := leaving(region_of(study), path, names)) is not None:
+        pose = ", ".join(f"{v:.4g}" for v in found.pose)
+        read = read_toml(file)
+        key = travelled(read)
+        expected = f"a {key[-1]} inside the region, {region_of(study)}"
+        raise StudyError([read.problem(key, f"the pose ({pose}) on it", expected)])
+
+
+def drive_of(drive: DriveTable) -> Drive:
+    """Names and encoders of the axes."""
+    return Drive(drive.axes, drive.increments, drive.encoder_gear)
+
+
+def drive_file_names(study: Study, file: FilePath, asked_for: Sequence[str] | None) -> list[str]:
+    """The drive files' names, from writing those of the cycle's path to nowhere before hours of work go into them.
+
+    Args:
+        asked_for: formats that the command line has in place of the study's own.
+
+    Raises:
+        StudyError: a format cannot say what the study asks for.
+    """
+    asked = study.trajectory
+    if asked is None:
+        return []
+    stems = ("cycle", "approach") if asked.approach else ("cycle",)
+    try:
+        robot, drive = robot_of(study), drive_of(asked.drive)
+        at_rest = _along(robot, path_of(asked, robot.pose_names), asked.period)
+        return [name for stem in stems for name in drive_files(stem, at_rest, asked.files, drive)]
+    except InvalidValue as error:
+        by = f"for --format {' --format '.join(asked_for)}" if asked_for else ""
+        key = ("trajectory",) if asked_for else ("trajectory", "files")
+        read = read_toml(file)
+        found = f"{error.what} {error.found} {by}".strip()
+        raise StudyError([refused_field(read, error, by) or read.problem(key, found, error.expected)]) from error
+
+
+def _along(robot: Mechanism, path: Path, period: float) -> Setpoints:
+    """Set-points at rest all along the path; zero where a limb cannot reach, which is told elsewhere."""
+    (poses,) = path.evaluate(np.linspace(0.0, path.length, 101), 0)
+    joints = np.nan_to_num(to_actuators(robot, robot.inverse(poses)))
+    table = np.hstack([np.arange(101)[:, None] * period, poses, joints, np.zeros((101, 3 * joints.shape[1]))])
+    header = {"period [s]": period, "periods": [100]}
+    return Setpoints.of_table(table, robot.pose_names, robot.actuator_names, robot.actuator_units, header)
+
+
+def limits_of(limits: LimitsTable) -> Limits:
+    """The limits of the cycle."""
+    return Limits(**limits.model_dump())
+
+
+def timing_of(study: Study) -> tuple[Timing, tuple[str, ...]]:
+    """The study's timing law, and the limits that it is run without although the study may set them.
+
+    Only jerk: it makes a motion smooth, while what else a law cannot keep rates the drives, and is refused.
+    """
+    asked = study.trajectory
+    assert asked is not None
+    if asked.law == "toppra":
+        from trajectory import time_optimal
+
+        return partial(time_optimal, intervals=asked.grid), ("jerk",)
+    if asked.law == "free":
+        from trajectory import free_motion
+
+        return partial(free_motion, within=pose_bounds_of(study)), ()
+    from trajectory import jerk_limited
+
+    return jerk_limited, ()
+
+
+def pose_bounds_of(study: Study) -> PoseBounds:
+    """The study's region, as the free law takes it."""
+    region = region_of(study)
+    low, high = zip(*(region.intervals[name] for name in mechanism_class(study.mechanism).pose_names), strict=True)
+    return PoseBounds(low, high, region.radius if isinstance(region, Cylinder) else math.inf)
+
+
+def approach_limits(asked: ApproachTable, drives: Limits, joints: int) -> Limits:
+    """The approach's own limits, nowhere above the drives', and the drives' torque."""
+    own = Limits(asked.speed, asked.acceleration, jerk=asked.jerk)
+    kept = ("torque", "position", "stall_torque", "no_load_speed")  # the RMS is a cycle's
+    merged: dict[str, Any] = {name: getattr(drives, name) for name in kept}
+    for name in ("speed", "acceleration", "jerk"):
+        given = [limit for limits in (own, drives) if (limit := limits.of_joints(name, joints)) is not None]
+        merged[name] = tuple(np.min(given, axis=0).tolist())
+    return Limits(**merged)

@@ -1,0 +1,239 @@
+"""The command line. Heavy imports wait until a command runs, so that help comes at once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from studies.cli.ending import ended_by
+from studies.cli.inputs import load, output_folder, robot_for, study_file
+from studies.cli.map_command import map_
+from studies.cli.options import (
+    ForceOption,
+    FormatOption,
+    JsonOption,
+    OutOption,
+    PrototypeOption,
+    SecondsOption,
+    StudyArgument,
+)
+from studies.cli.run_command import optimise, run
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    help="Design fast parallel robots, verify the design, and write the set-points that their drives run.",
+    epilog="Exit status: 0 all holds, 1 a requirement fails, 2 the input is wrong.",
+)
+
+
+@app.command("list")
+def list_(json: JsonOption = False) -> None:
+    """List the mechanisms and the studies that come with Linkwright.
+
+    linkwright list --json
+    """
+    from kinematics import MECHANISMS
+    from studies.building import load_study
+    from studies.cli import console
+    from studies.study_file import FOLDER, study_names
+
+    titles = {name: load_study(FOLDER / name / "study.toml").title for name in study_names()}
+    mechanisms = {name: (kind.__doc__ or "").splitlines()[0] for name, kind in MECHANISMS.items()}
+    if json:
+        console.print_json({"mechanisms": mechanisms, "studies": titles})
+        return
+    console.print_table("Mechanisms", ("name", "pose and joints"), list(mechanisms.items()))
+    console.print_table("Studies", ("name", "question"), list(titles.items()))
+
+
+app.command()(run)
+app.command()(optimise)
+app.command("map")(map_)
+
+
+@app.command()
+def certify(
+    study: StudyArgument,
+    margin: Annotated[
+        str | None,
+        typer.Option("--margin", help="Only this one (default: those that the study names)."),
+    ] = None,
+    at_least: Annotated[
+        float | None,
+        typer.Option("--at-least", help="The bound to prove for --margin (default: the required one, or the best)."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Folder for the certificates (default: none are written).")
+    ] = None,
+    json: JsonOption = False,
+    prototype: PrototypeOption = False,
+    seconds: SecondsOption = None,
+    force: ForceOption = False,
+) -> None:
+    """Prove the requirements of the committed optimum at every pose of the region; exits 1 if one is not.
+
+    linkwright certify heli4 --out results
+
+    linkwright certify gough_stewart --margin joint_travel --at-least 0.02
+    """
+    from studies.cli import console
+    from studies.results import Written, claim_file, write_proofs
+    from studies.stages import prove_claims, question_of
+
+    asked = load(study, seconds=seconds)
+    question = question_of(asked, robot_for(study, asked, prototype))
+    claims = question.only(margin, at_least)
+    folder = output_folder(out, [claim_file(claim.margin) for claim in claims], force)
+    with console.progress() as tell:
+        proofs = prove_claims(question, claims, {}, {}, tell)
+    written = write_proofs(question, proofs, folder) if folder else Written()
+    console.print_proofs(question, proofs, written, json)
+    if not all(proof.certificate.status == "proved" for proof in proofs):
+        raise typer.Exit(1)
+
+
+@app.command()
+def trajectory(
+    study: StudyArgument,
+    json: JsonOption = False,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Folder for the set-points (default: none are written).")
+    ] = None,
+    prototype: PrototypeOption = False,
+    law: Annotated[
+        str | None, typer.Option("--law", help="Timing law, in place of the study's: jerk, toppra or free.")
+    ] = None,
+    formats: FormatOption = None,
+    force: ForceOption = False,
+) -> None:
+    """Time and verify the study's cycle on its committed optimum; with --out, write the set-points.
+
+    linkwright trajectory cycle_reference --law toppra
+
+    linkwright trajectory heli4 --out results --format csv --format ros2
+    """
+    from kinematics import InvalidValue
+    from studies.building import drive_file_names
+    from studies.cli import console
+    from studies.results import Written, write_setpoints
+    from studies.stages import require_on_cycle, stage, time_cycle
+    from studies.study_file import LAWS, told_at_key
+
+    if law is not None and law not in LAWS:
+        raise InvalidValue("--law", law, f"one of {', '.join(LAWS)}")
+    from trajectory.drive_files import format_named
+
+    if formats and out is None:
+        raise InvalidValue("--format", ", ".join(formats), "--out with it, the folder for the files")
+    for name in formats or ():
+        format_named(name)
+    asked = load(study, formats)
+    if asked.trajectory is None:
+        raise InvalidValue(f"study {asked.name}", "no [trajectory] table", "one with the cycle to time")
+    robot = robot_for(study, load(study), prototype)
+    folder = output_folder(out, drive_file_names(asked, study_file(study), formats), force)
+    if law is not None:
+        asked = asked.model_copy(update={"trajectory": asked.trajectory.model_copy(update={"law": law})})
+    with told_at_key(study_file(study)), console.progress() as tell, stage("cycle", tell):
+        timing = time_cycle(asked, robot)
+    require_on_cycle(asked, timing.cycle)
+    console.print_timing(timing, write_setpoints(timing, asked, folder) if folder else Written(), json)
+
+
+@app.command()
+def report(
+    study: StudyArgument,
+    out: OutOption = None,
+    json: JsonOption = False,
+    prototype: PrototypeOption = False,
+    seconds: SecondsOption = None,
+    force: ForceOption = False,
+) -> None:
+    """Write the report and the set-points of the committed optimum; its proofs are replayed, nothing is optimised.
+
+    linkwright report heli4 --out results
+    """
+    from studies.building import drive_file_names
+    from studies.cli import console
+    from studies.committed import committed_certificates
+    from studies.results import report_names, write_report
+    from studies.stages import certified, run
+    from studies.study_file import told_at_key
+
+    asked = load(study, seconds=seconds)
+    robot = robot_for(study, asked, prototype)
+    names = report_names(drive_file_names(asked, study_file(study), None))
+    folder = output_folder(out or Path("out") / asked.name, names, force)
+    known = committed_certificates(asked, study_file(study).parent, robot)
+    with told_at_key(study_file(study)), console.progress() as tell:
+        outcome = certified(run(asked, robot, tell), known, tell)
+    console.print_outcome(outcome, write_report(outcome, folder, f"linkwright report {study}"), json)
+
+
+@app.command()
+def export(
+    study: StudyArgument,
+    out: Annotated[Path, typer.Option("--out", help="The file to write.")],
+    format_: Annotated[Literal["mjcf"], typer.Option("--format", help="MJCF, MuJoCo's format.")] = "mjcf",  # noqa: ARG001
+    rods: Annotated[
+        Literal["split", "uniform"] | None,
+        typer.Option("--rods", help="Masses at the rods' ends, or rods as bodies (default: as the study has it)."),
+    ] = None,
+    json: JsonOption = False,
+    prototype: PrototypeOption = False,
+    force: ForceOption = False,
+) -> None:
+    """Write the committed optimum as a multibody model for a simulator, at the cycle's start or at home.
+
+    linkwright export heli4 --out heli4.xml --rods uniform
+    """
+    from kinematics import UNIFORM
+    from studies.cli import console
+    from studies.results import Written, write_model
+    from studies.study_file import told_at_key
+    from trajectory import require_writable
+
+    asked = load(study)
+    robot = robot_for(study, asked, prototype)
+    require_writable(out.parent)
+    rod_middle = None if rods is None else {"split": 0.0, "uniform": UNIFORM}[rods]
+    with told_at_key(study_file(study)):
+        written = write_model(robot, asked, rod_middle, out, force)
+    console.print_files(Written((written,)), json)
+
+
+@app.command()
+def check(
+    studies: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[STUDY ...]", help="Names or paths (default: all that have an optimum)."),
+    ] = None,
+    json: JsonOption = False,
+    verbose: Annotated[bool, typer.Option("--verbose", help="Show the claims that hold, too.")] = False,
+) -> None:
+    """Verify committed optimum.toml files again, figure by figure; for CI.
+
+    linkwright check heli4 my_robot/study.toml --json
+    """
+    from studies.cli import console
+    from studies.committed import FILE, check_study
+    from studies.study_file import FOLDER, study_names
+
+    names = studies or [name for name in study_names() if (FOLDER / name / FILE).is_file()]
+    with console.progress() as tell:
+        found = {}
+        for name in names:
+            tell(f"check {name}")
+            found[name] = check_study(study_file(name))
+    console.print_checks(found, json, verbose)
+    if not all(row.holds for rows in found.values() for row in rows):
+        raise typer.Exit(1)
+
+
+def main() -> None:
+    """Entry point: an error on purpose becomes its message and its exit status, never a traceback."""
+    ended_by(app)

@@ -1,0 +1,69 @@
+"""How a command ends: what it says of an error, and its exit status. Heavy imports wait, as in `cli`."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+import warnings
+from typing import Any, NoReturn
+
+import typer
+
+
+def ended_by(app: typer.Typer) -> None:
+    """Run the command line, and leave the process with its exit status."""
+    if not sys.warnoptions:
+        warnings.simplefilter(
+            "ignore"
+        )  # of the libraries, for programmers; what goes wrong is checked, and told in words
+    signal.signal(signal.SIGINT, _interrupted)
+    signal.signal(signal.SIGTERM, _interrupted)
+    try:
+        status = app(standalone_mode=False)
+    except Exception as error:
+        from kinematics import LinkwrightError
+
+        if isinstance(error, LinkwrightError):
+            _fail(str(error), error.exit_status, _data(error))
+        if not hasattr(error, "format_message"):  # typer's own, of a wrong command line, have that
+            raise
+        _fail(error.format_message(), 2, {"kind": type(error).__name__})
+    sys.exit(status if isinstance(status, int) else 0)
+
+
+def _fail(message: str, status: int, data: dict[str, Any]) -> NoReturn:
+    """The message on standard error and, where the command is to print JSON, an object on standard output."""
+    if "--json" in sys.argv:
+        print(json.dumps({"error": message, "exit_status": status, **data}, indent=2))
+    print(f"linkwright: {message}", file=sys.stderr)
+    sys.exit(status)
+
+
+def _data(error: Exception) -> dict[str, Any]:
+    """What an error holds beside its words: its kind, problems by file and key, requirements that fail."""
+    kind = {"kind": type(error).__name__}
+    lists = {name: getattr(error, name, ()) for name in ("problems", "failed")}
+    return kind | {name: [_plain(vars(one)) for one in found] for name, found in lists.items() if found}
+
+
+def _plain(value: Any) -> Any:
+    match value:
+        case float():
+            return value if abs(value) < float("inf") else None  # JSON has no other; NaN is below nothing
+        case str() | int() | bool() | None:
+            return value
+        case dict():
+            return {key: _plain(v) for key, v in value.items()}
+        case list() | tuple():
+            return [_plain(v) for v in value]
+        case _:
+            return str(value)
+
+
+def _interrupted(kind: int, _: object) -> None:
+    """Stop at once: an exception would be swallowed inside the solver, which then answers as if nothing had been."""
+    show_cursor = "\x1b[?25h" if sys.stderr.isatty() else ""
+    os.write(2, f"{show_cursor}\nlinkwright: interrupted, nothing was left half-written\n".encode())
+    os._exit(128 + kind)

@@ -1,0 +1,90 @@
+"""`linkwright map`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from studies.cli.inputs import load, output_folder, robot_for
+from studies.cli.options import ForceOption, JsonOption, OutOption, PrototypeOption, SecondsOption, StudyArgument
+
+MarginOption = Annotated[
+    str | None,
+    typer.Option("--margin", help="Any margin of the mechanism, v_w, f_w or condition_number; fvi if not given."),
+]
+SectionOption = Annotated[
+    str | None,
+    typer.Option("--section", metavar="A,B", help="The plane, such as y,z; the first two that vary if not given."),
+]
+AtOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--at",
+        metavar="NAME=VALUE[,...]",
+        help="Fix another coordinate, such as theta_deg=0; of several values the worst counts, "
+        "as it does over the whole interval if not given.",
+    ),
+]
+OverOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--over",
+        metavar="NAME=LOW:HIGH",
+        help="Other bounds than the study's region has, such as z_mm=-800:800, or radius=0.7 of a cylinder.",
+    ),
+]
+AtLeastOption = Annotated[
+    float | None,
+    typer.Option(
+        "--at-least",
+        metavar="C",
+        help="Bound of the area and the boundary; for condition_number it is an upper one. "
+        "If not given: the study's requirement; 1 for fvi; else all in reach.",
+    ),
+]
+CertifiedOption = Annotated[
+    bool, typer.Option("--certified", help="Prove too: the largest cylinder's radius, or the plane's cells.")
+]
+ToleranceOption = Annotated[
+    float, typer.Option("--tolerance", help="By what part the figures may still move when the grid is refined.")
+]
+
+
+def map_(
+    study: StudyArgument,
+    margin: MarginOption = None,
+    section: SectionOption = None,
+    at: AtOption = None,
+    over: OverOption = None,
+    at_least: AtLeastOption = None,
+    certified: CertifiedOption = False,
+    tolerance: ToleranceOption = 1e-3,
+    out: OutOption = None,
+    json: JsonOption = False,
+    prototype: PrototypeOption = False,
+    seconds: SecondsOption = None,
+    force: ForceOption = False,
+) -> None:
+    """Map an index over a plane of the workspace: area, mean, deviation, boundary, picture and numbers.
+
+    Exits 1 where the figures still move by more than the tolerance.
+
+    linkwright map heli4 --certified
+
+    linkwright map redundant_3t1r --over y=-0.3187:0.3187 --over z=-0.8:0.8 --at theta_deg=0
+    """
+    from studies.cli import console
+    from studies.cli.map_console import print_map
+    from studies.results import map_names, write_map
+    from studies.stages import map_request, run_map
+
+    asked = load(study, seconds=seconds)
+    request = map_request(asked, robot_for(study, asked, prototype), margin, section, at or (), over or (), at_least)
+    folder = output_folder(out or Path("out") / asked.name, map_names(request), force)
+    with console.progress() as tell:
+        outcome = run_map(request, tolerance, certified, tell, asked.budget.map)
+    print_map(outcome, write_map(outcome, asked, folder), json)
+    if not outcome.found.settled:
+        raise typer.Exit(1)

@@ -1,0 +1,67 @@
+"""`linkwright run` and `linkwright optimise`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from studies.cli.inputs import load, output_folder, study_file
+from studies.cli.options import ForceOption, JsonOption, OutOption, SecondsOption, StudyArgument
+
+
+def run(
+    study: StudyArgument,
+    out: OutOption = None,
+    json: JsonOption = False,
+    commit: Annotated[
+        bool,
+        typer.Option("--commit", help="Also put optimum.toml beside the study, for `check` to verify from now on."),
+    ] = False,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Optimise anew, though the folder has the optimum of an earlier run.")
+    ] = False,
+    seconds: SecondsOption = None,
+    force: ForceOption = False,
+) -> None:
+    """The whole way: optimise, search densely, time the cycle, verify, prove, write set-points and report.
+
+    The optimum is written as soon as it is found. The next run into the same folder takes it up, if the question is the
+    same.
+
+    linkwright run heli4 --out results
+
+    linkwright run my_robot/study.toml --commit
+    """
+    from studies.building import drive_file_names
+    from studies.cli import console
+    from studies.results import optimum_names, run_into, run_names, write_run
+    from studies.study_file import told_at_key
+
+    asked = load(study, seconds=seconds)
+    names = run_names(asked, drive_file_names(asked, study_file(study), None))
+    folder = output_folder(out or Path("out") / asked.name, names, force)
+    beside = output_folder(study_file(study).parent, optimum_names(asked), force) if commit else None
+    with told_at_key(study_file(study)), console.progress() as tell:
+        outcome = run_into(folder, asked, fresh, tell)
+    console.print_outcome(outcome, write_run(outcome, folder, f"linkwright run {study}", beside), json)
+
+
+def optimise(study: StudyArgument, json: JsonOption = False, seconds: SecondsOption = None) -> None:
+    """Optimise the geometry and print what was found; writes nothing.
+
+    linkwright optimise heli4 --json
+    """
+    from kinematics import InvalidValue
+    from studies.cli import console
+    from studies.results import Written
+    from studies.stages import designed
+    from studies.study_file import told_at_key
+
+    asked = load(study, seconds=seconds).model_copy(update={"trajectory": None})
+    if asked.optimise is None:
+        raise InvalidValue(f"study {asked.name}", "no [optimise] table", "one with the variables to optimise")
+    with told_at_key(study_file(study)), console.progress() as tell:
+        outcome = designed(asked, None, tell)
+    console.print_outcome(outcome, Written(), json)

@@ -1,0 +1,120 @@
+"""The certificates beside an `optimum.toml`: one file a margin, and its entry in the `[certificate]` table."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from design import Certificate, certificate_bytes, load_certificate
+from kinematics import LinkwrightError, rounded_down
+from studies.stages import Claim, Proof, Question, Row, same, same_digest
+
+WORTH = 0.5  # of the lowest value found: a best bound below this says next to nothing
+FOLDER = "certificates"
+
+
+def file_of(margin: str) -> str:
+    """Where a margin's certificate is, from the optimum's folder."""
+    return f"{FOLDER}/{margin}.npz"
+
+
+def proof_files(proofs: Sequence[Proof]) -> dict[str, str | bytes]:
+    """What was proved, as files."""
+    return {file_of(p.certificate.margin): certificate_bytes(p.certificate) for p in proofs if _proved(p.certificate)}
+
+
+def proof_entries(proofs: Sequence[Proof], most_boxes: int) -> dict[str, dict[str, Any]]:
+    """What an optimum says of each claim; one that stayed undecided has no file."""
+    return {p.certificate.margin: _entry(p.certificate, most_boxes) for p in proofs}
+
+
+def _entry(certificate: Certificate, most_boxes: int) -> dict[str, Any]:
+    entry: dict[str, Any] = {"at_least": certificate.at_least, "status": certificate.status}
+    if not _proved(certificate):
+        return entry | {"most_boxes": most_boxes}
+    digest = hashlib.sha256(certificate_bytes(certificate)).hexdigest()
+    return entry | {"boxes": certificate.boxes, "file": file_of(certificate.margin), "sha256": digest}
+
+
+def _proved(certificate: Certificate) -> bool:
+    return certificate.status == "proved"
+
+
+def known_certificates(entries: Mapping[str, Mapping[str, Any]], folder: Path) -> dict[str, Certificate]:
+    """By margin; still to be replayed.
+
+    Raises:
+        UnreadableCertificate: an optimum speaks of a file that cannot be read.
+    """
+    return {m: load_certificate(folder / file_of(m)) for m, entry in entries.items() if entry.get("status") == "proved"}
+
+
+def proof_rows(
+    question: Question, entries: Mapping[str, Mapping[str, Any]], worst: Mapping[str, float], folder: Path
+) -> list[Row]:
+    """Every claim of the study against what the optimum in a folder says of it, and each file replayed.
+
+    Args:
+        entries: the optimum's, by margin.
+        worst: what a dense search found, by margin, as far as it is known; a proof above it would be false.
+
+    Raises:
+        UnreadableCertificate: a file is missing or cannot be read.
+    """
+    claims = {claim.margin: claim for claim in question.claims()}
+    rows = [
+        _off(f"certificate.{name}", "no claim of the study", "in the file") for name in entries if name not in claims
+    ]
+    for margin, claim in claims.items():
+        if margin not in entries:
+            rows.append(_off(f"certificate.{margin}", "an answer", "none in the file"))
+        elif entries[margin].get("status") == "undecided":
+            rows += _undecided(question, claim, entries[margin])
+        else:
+            rows += _replayed(question, claim, entries[margin], worst, folder)
+    return rows
+
+
+def _undecided(question: Question, claim: Claim, entry: Mapping[str, Any]) -> list[Row]:
+    """Nothing is claimed, so nothing can be false but what it says it tried."""
+    at_least = claim.at_least or 0.0
+    expected = {"at_least": at_least, "status": "undecided", "most_boxes": question.study.certify.most_boxes}
+    rows = _entry_rows(claim.margin, entry, expected)
+    return [*rows, Row(f"{claim.margin} >= {at_least:g} everywhere", "not claimed", "undecided, sampled only", 0.0)]
+
+
+def _replayed(
+    question: Question, claim: Claim, entry: Mapping[str, Any], worst: Mapping[str, float], folder: Path
+) -> list[Row]:
+    path = folder / file_of(claim.margin)
+    certificate = load_certificate(path)
+    expected = _entry(certificate, 0) | {"status": "proved", "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
+    rows = _entry_rows(claim.margin, entry, expected)
+    what = f"{claim.margin} >= {rounded_down(certificate.at_least, 7)} everywhere"
+    try:
+        boxes = question.replay(certificate, claim)
+    except LinkwrightError as error:
+        return [*rows, _off(what, "proved", str(error))]
+    if not _proved(certificate):
+        return [*rows, _off(what, "proved", certificate.status)]
+    lowest = worst[claim.margin] if claim.margin in worst else question.worst(claim.margin).value
+    rows.append(Row(what, "proved", f"{boxes} boxes replayed", lowest - certificate.at_least))
+    if claim.at_least is None:  # nothing is required: a best bound, which must be worth its name
+        says = f"a bound above {WORTH:g} of the lowest found, {lowest:.6g}"
+        found, above = rounded_down(certificate.at_least, 6), certificate.at_least - WORTH * lowest
+        rows.append(Row(f"{claim.margin}, best bound", says, found, above))
+    return rows
+
+
+def _entry_rows(margin: str, entry: Mapping[str, Any], expected: Mapping[str, Any]) -> list[Row]:
+    rows = []
+    for key in dict.fromkeys([*expected, *entry]):
+        compare = same_digest if key == "sha256" else same
+        rows.append(compare(f"certificate.{margin}.{key}", entry.get(key), expected.get(key)))
+    return rows
+
+
+def _off(what: str, expected: str, found: str) -> Row:
+    return Row(what, expected, found, -1.0)

@@ -1,0 +1,16 @@
+"""The report: tables and pictures."""
+
+from studies.report.map_plot import bound_label, map_picture
+from studies.report.report import html_report, pictures_of
+from studies.report.tables import PROOFS, margin_columns, margin_rows, proof_rows
+
+__all__ = [
+    "PROOFS",
+    "bound_label",
+    "html_report",
+    "map_picture",
+    "margin_columns",
+    "margin_rows",
+    "pictures_of",
+    "proof_rows",
+]

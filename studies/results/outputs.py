@@ -1,0 +1,148 @@
+"""What a run leaves in its folder."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from design import certificate_bytes
+from kinematics import Mechanism, mjcf
+from studies.building import drive_of, home_of, path_of, problem_of
+from studies.committed import FILE, file_of, optimum_of, proof_files
+from studies.report import html_report, pictures_of
+from studies.results.output_folder import Contents, OutputFolder, Written, require_free
+from studies.stages import Outcome, Proof, Question, Timing, claims_of
+from studies.study_file import Study, TrajectoryTable, digest_of
+from trajectory import write_files
+from trajectory.drive_files import drive_files
+
+REPORT, MECHANISM = "report.html", "mechanism.png"
+Files = dict[str, Contents]  # by kind
+
+
+def run_names(study: Study, drive_files: Sequence[str]) -> list[str]:
+    """All that a run writes."""
+    return [*optimum_names(study), *report_names(drive_files)]
+
+
+def optimum_names(study: Study) -> list[str]:
+    """The optimum, and the certificates beside it."""
+    return [FILE, *(file_of(claim.margin) for claim in claims_of(study, problem_of(study)))]
+
+
+def report_names(drive_files: Sequence[str]) -> list[str]:
+    """All that a report writes."""
+    return [REPORT, MECHANISM, *drive_files]
+
+
+def made_for(study: Study, robot: Mechanism) -> str:
+    """Digest of the question that files answer; which formats they have belongs to none."""
+    asked = study.model_copy(update={"title": ""})
+    if asked.trajectory is not None:
+        asked = asked.model_copy(update={"trajectory": asked.trajectory.model_copy(update={"files": ("csv",)})})
+    return digest_of({"study": asked.digest, "geometry": robot.geometry.digest})
+
+
+def write_optimum(outcome: Outcome, folder: OutputFolder) -> Written:
+    """The optimum alone, before its cycle and its proofs.
+
+    Raises:
+        RequirementFailed: a requirement is not met; nothing is written then.
+        CannotWrite, FileInTheWay: as `OutputFolder.write`.
+    """
+    outcome.require_all()
+    files = {"optimum": {FILE: optimum_of(outcome).text()}}
+    return folder.write(files, made_for(outcome.study, outcome.robot))
+
+
+def write_run(outcome: Outcome, folder: OutputFolder, command: str, beside: OutputFolder | None) -> Written:
+    """Optimum, certificates, report and set-points; `beside` is the study's folder where the first two go too.
+
+    Raises:
+        As `write_optimum`.
+    """
+    outcome.require_all()
+    question = made_for(outcome.study, outcome.robot)
+    optimum: Files = {"optimum": {**proof_files(outcome.proofs), FILE: optimum_of(outcome).text()}}
+    written = folder.write({**optimum, **_report(outcome, command)}, question)
+    return written + beside.write(optimum, question) if beside else written
+
+
+def write_report(outcome: Outcome, folder: OutputFolder, command: str) -> Written:
+    """Report and set-points, as `write_run` but for the optimum."""
+    outcome.require_all()
+    return folder.write(_report(outcome, command), made_for(outcome.study, outcome.robot))
+
+
+def _report(outcome: Outcome, command: str) -> Files:
+    pictures = pictures_of(outcome)
+    files: Contents = {REPORT: html_report(outcome, pictures, command), MECHANISM: pictures[0][1]}
+    asked = outcome.study.trajectory
+    drives = _setpoints(outcome.timing, asked) if outcome.timing and asked else {}
+    return {"report": files, "set-points": drives}
+
+
+def write_proofs(question: Question, proofs: Sequence[Proof], folder: OutputFolder) -> Written:
+    """Every certificate, the boxes left of an undecided one included.
+
+    Raises:
+        CannotWrite, FileInTheWay: as `OutputFolder.write`.
+    """
+    kinds = {p.certificate.margin: {claim_file(p.certificate.margin): certificate_bytes(p.certificate)} for p in proofs}
+    files = {f"certificate of {margin}": file for margin, file in kinds.items()}
+    return folder.write(files, made_for(question.study, question.robot))
+
+
+def claim_file(margin: str) -> str:
+    """Where `certify` writes its certificate."""
+    return f"{margin}.npz"
+
+
+def write_model(robot: Mechanism, study: Study, rod_middle: float | None, file: Path, force: bool = False) -> Path:
+    """The robot as an MJCF file that starts where the study's cycle does, with its payload; else at home, empty.
+
+    Args:
+        robot: whose geometry and masses are written.
+        study: asks for the cycle.
+        rod_middle: share of each rod's mass at its middle; None for the robot's own.
+        file: what to write.
+        force: replace a file that is there.
+
+    Raises:
+        InvalidValue: the mechanism has no such model.
+        HomeOutOfReach, UnreachablePose: a limb cannot reach home, or the start.
+        CannotWrite, FileInTheWay: the file cannot be written.
+    """
+    if study.trajectory is None:
+        pose, payload = home_of(robot), 0.0
+    else:
+        path, payload = path_of(study.trajectory, robot.pose_names), study.trajectory.payload
+        (pose,) = path.evaluate(np.array(0.0), 0)
+    if rod_middle is not None:
+        robot = robot.with_inertia(replace(robot.inertia, rod_middle=rod_middle))
+    text = mjcf(robot, pose, payload)
+    require_free(file, force, text)
+    return write_files(file.parent, {file.name: text})[0]
+
+
+def write_setpoints(timing: Timing, study: Study, folder: OutputFolder) -> Written:
+    """Only the set-points, in the formats asked for.
+
+    Raises:
+        InvalidValue: a format cannot say them.
+        CannotWrite, FileInTheWay: as `OutputFolder.write`.
+    """
+    assert study.trajectory is not None
+    question = made_for(study, timing.cycle.robot)
+    return folder.write({"set-points": _setpoints(timing, study.trajectory)}, question)
+
+
+def _setpoints(timing: Timing, asked: TrajectoryTable) -> dict[str, str | bytes]:
+    drive = drive_of(asked.drive)
+    files = drive_files("cycle", timing.setpoints, asked.files, drive)
+    if timing.approach is not None:
+        files |= drive_files("approach", timing.approach.setpoints, asked.files, drive)
+    return files

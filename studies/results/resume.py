@@ -1,0 +1,58 @@
+"""A run into a folder: its optimum is on the disk before the cycle and the proofs, and the next run takes it up."""
+
+from __future__ import annotations
+
+from design import Certificate, UnreadableCertificate
+from kinematics import Mechanism
+from studies.committed import FILE, Optimum, committed_certificates, read_optimum
+from studies.errors import StudyError
+from studies.results.output_folder import OutputFolder
+from studies.results.outputs import write_optimum
+from studies.stages import Lasting, Outcome, Progress, certified, designed, with_cycle
+from studies.study_file import Study
+
+
+def run_into(folder: OutputFolder, study: Study, fresh: bool, progress: Progress) -> Outcome:
+    """All stages of a run.
+
+    Args:
+        folder: where the optimum is kept.
+        fresh: whether to optimise though the folder has an optimum that answers the study's design question.
+
+    Raises:
+        What the stages raise; the optimum stays in the folder then, once it is found.
+    """
+    known = None if fresh else known_optimum(folder, study)
+    if known is not None:
+        progress(
+            Lasting(f"{folder.path / FILE}: taken up, it answers the same design question (--fresh optimises anew)")
+        )
+        robot = known.robot(study)
+        outcome = designed(study, robot, progress, str(known.data["made_by"]["solver_status"]))
+        certificates = _known_certificates(folder, study, robot)
+    else:
+        outcome, certificates = designed(study, None, progress), {}
+        if study.optimise is not None:
+            written = write_optimum(outcome, folder)
+            progress(Lasting(f"{folder.path / FILE}: written, before the cycle and the proofs"))
+            for path in written.left:
+                progress(Lasting(f"{path}: left as an earlier command wrote it, until this one ends"))
+    return certified(with_cycle(outcome, progress), certificates, progress)
+
+
+def _known_certificates(folder: OutputFolder, study: Study, robot: Mechanism) -> dict[str, Certificate]:
+    try:
+        return committed_certificates(study, folder.path, robot)
+    except UnreadableCertificate:  # of another version of this program, or gone: proved again
+        return {}
+
+
+def known_optimum(folder: OutputFolder, study: Study) -> Optimum | None:
+    """The folder's optimum where this program wrote it and it answers the study's design question."""
+    if study.optimise is None or not folder.owns(FILE):
+        return None
+    try:
+        optimum = read_optimum(folder.path / FILE)
+        return optimum if optimum.answers_design(study) else None
+    except StudyError:  # of another version of this program
+        return None

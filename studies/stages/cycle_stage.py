@@ -1,0 +1,164 @@
+"""A study's cycle on a robot: the approach to it, timing, verification, set-points, and its requirements on the way."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from design import Problem, Region
+from kinematics import InvalidValue, LinkwrightError, Mechanism, to_actuators
+from studies.building import approach_limits, home_of, leaving, limits_of, path_of, problem_of, region_of, timing_of
+from studies.errors import ApproachFailed, Failed, RequirementFailed
+from studies.study_file import Study
+from trajectory import Cycle, Limits, Move, Path, Setpoints, Way, cycle_setpoints, lower_bound, there_and_back
+
+_MOST_SETPOINTS = 1_000_000
+
+
+@dataclass(frozen=True)
+class Timing:
+    """A cycle, its set-points, and the way to its start.
+
+    Attributes:
+        cycle: both ways, timed and verified.
+        setpoints: of the cycle, stretched to whole periods and verified again.
+        approach: from home; None where the study asks for none.
+        lower_bound: no motion on the path itself takes less for the way there, even without a limit of jerk [s].
+        seconds: wall-clock time of timing and verification.
+    """
+
+    cycle: Cycle
+    setpoints: Setpoints
+    approach: Move | None
+    lower_bound: float
+    seconds: float
+
+    @property
+    def half_cycle(self) -> float:
+        """The way there, before the stretch to whole periods [s]."""
+        return self.cycle.half
+
+    @property
+    def half_cycle_name(self) -> str:
+        """Of `half_cycle` among the figures: "closed_cycle" where the way ends where it starts and none leads back."""
+        return "half_cycle" if self.cycle.back else "closed_cycle"
+
+    def figures(self) -> dict[str, Any]:
+        """What the timing claims, as plain data."""
+        there = [piece.timed for piece in self.cycle.there]
+        return {
+            "law": there[0].motion.name,
+            self.half_cycle_name: self.half_cycle,
+            "lower_bound": self.lower_bound,
+            "cycle_on_the_bus": float(self.setpoints.time[-1]),
+            "repair_factor": max(timed.factor for timed in there),
+            "peak_over_limit": {
+                name: max(piece.timed.verification.peak_over_limit[name] for piece in self.cycle.pieces)
+                for name in there[0].verification.peak_over_limit
+            },
+            "worst_rms_over_peak_torque": max(float(timed.verification.rms_over_peak.max()) for timed in there),
+            **({"limits_not_kept": list(self.cycle.not_kept)} if self.cycle.not_kept else {}),
+        }
+
+
+def margins_on(problem: Problem, robot: Mechanism, ways: Sequence[Way], grid: int) -> dict[str, float]:
+    """The worst value of each requirement's margin on what a cycle travels; NaN counts as -inf."""
+    poses = np.concatenate([way.evaluate(np.linspace(0.0, way.length, grid + 1), 0)[0] for way in ways])
+    found = {}
+    for requirement in problem.requirements:
+        values = robot.margin(requirement.margin, poses, problem.fvi_bounds, problem.characteristic_length)
+        found[requirement.margin] = float(np.where(np.isnan(values), -np.inf, values).min())
+    return found
+
+
+def require_on_cycle(study: Study, cycle: Cycle) -> None:
+    """Check the study's requirements on its cycle.
+
+    Raises:
+        RequirementFailed: with each one that fails there.
+    """
+    assert study.trajectory is not None
+    problem = problem_of(study)
+    found = margins_on(problem, cycle.robot, cycle.ways, study.trajectory.grid)
+    failed = [
+        Failed(f"{r.margin} on the cycle", r.at_least, found[r.margin], ())
+        for r in problem.requirements
+        if not found[r.margin] >= r.at_least
+    ]
+    if failed:
+        raise RequirementFailed(failed)
+
+
+def time_cycle(study: Study, robot: Mechanism) -> Timing:
+    """Time, verify and sample the study's cycle on a robot.
+
+    Raises:
+        RequirementFailed: the cycle leaves the study's region; and what the timing law and the verification raise.
+    """
+    asked = study.trajectory
+    assert asked is not None
+    started = time.perf_counter()
+    path, limits, payload = path_of(asked, robot.pose_names), limits_of(asked.limits), asked.payload
+    _require_few(_least_duration(robot, path, limits), asked.period)  # before a proof of every hour of it
+    approach = _approach(study, robot, path, limits)
+    timing, cannot_keep = timing_of(study)
+    cycle = there_and_back(robot, path, limits, payload, timing, asked.payload_back, cannot_keep)
+    _require_inside(region_of(study), cycle)
+    seconds = time.perf_counter() - started
+    _require_few(sum(piece.duration for piece in cycle.pieces), asked.period)
+    points = cycle_setpoints(cycle, asked.period, robot.actuator_units)
+    bound = sum(lower_bound(robot, piece.path, limits, payload) for piece in cycle.there)
+    return Timing(cycle, points, approach, bound, seconds)
+
+
+def _approach(study: Study, robot: Mechanism, path: Path, limits: Limits) -> Move | None:
+    """The move from home to the path's start, before hours of work go into what it leads to; None where none is asked.
+
+    Raises:
+        ApproachFailed: it cannot be, and why.
+        HomeOutOfReach, UnreachablePose: of home, of the path's start.
+    """
+    from trajectory import plan_move
+
+    asked = study.trajectory
+    assert asked is not None
+    if asked.approach is None:
+        return None
+    (start,) = path.evaluate(np.array(0.0), 0)
+    robot.require_reachable(start)
+    home = home_of(robot)
+    gentle = approach_limits(asked.approach, limits, len(robot.joint_names))
+    try:
+        return plan_move(robot, home, start, gentle, asked.payload, asked.period, robot.actuator_units)
+    except LinkwrightError as error:
+        raise ApproachFailed(tuple(home.tolist()), tuple(start.tolist()), error) from error
+
+
+def _least_duration(robot: Mechanism, path: Path, limits: Limits) -> float:
+    """What the joints' travel takes at their speed limits, on the way there [s]; from few poses, so never too much."""
+    (poses,) = path.evaluate(np.linspace(0.0, path.length, 101), 0)
+    joints = to_actuators(robot, robot.inverse(poses))
+    speed = limits.of_joints("speed", joints.shape[1])
+    return 0.0 if speed is None else float((np.nansum(np.abs(np.diff(joints, axis=0)), axis=0) / speed).max())
+
+
+def _require_few(duration: float, period: float) -> None:
+    """Check that a cycle has not more set-points than a drive and a memory can hold.
+
+    Raises:
+        InvalidValue: of the period.
+    """
+    if not duration <= _MOST_SETPOINTS * period:
+        expected = f"one that cuts {duration:.3g} s into at most {_MOST_SETPOINTS:,} set-points"
+        raise InvalidValue("Trajectory period", period, expected)
+
+
+def _require_inside(region: Region, cycle: Cycle) -> None:
+    out = [found for way in cycle.ways if (found := leaving(region, way, cycle.robot.pose_names))]
+    if out:
+        room = "room to the region's boundary on the cycle [m or rad]"
+        raise RequirementFailed([Failed(room, 0.0, found.room, tuple(found.pose.tolist())) for found in out])

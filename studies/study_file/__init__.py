@@ -1,0 +1,63 @@
+"""The study file: its tables, their units, and the lines on which its keys stand."""
+
+from studies.study_file.at_key import refused_field, told_at_key, travelled
+from studies.study_file.locate import FILE, FOLDER, study_names, study_path
+from studies.study_file.machine_tables import InertiaTable
+from studies.study_file.path_tables import CycleTable, WaypointPathTable, WaypointTable, adept_cycle
+from studies.study_file.questions import changes, cycle_question, design_question, digest_of
+from studies.study_file.study import (
+    REGION_KINDS,
+    BoxTable,
+    BudgetTable,
+    CertifyTable,
+    CylinderTable,
+    OptimiseTable,
+    RequirementTable,
+    Study,
+    SumTable,
+)
+from studies.study_file.table import table_of
+from studies.study_file.toml_file import TomlFile, read_toml
+from studies.study_file.trajectory_tables import LAWS, ApproachTable, DriveTable, LimitsTable, TrajectoryTable
+from studies.study_file.units import LARGEST, Conversion, Dimension, Key, Table
+
+__all__ = [
+    "FILE",
+    "FOLDER",
+    "LARGEST",
+    "LAWS",
+    "REGION_KINDS",
+    "ApproachTable",
+    "BoxTable",
+    "BudgetTable",
+    "CertifyTable",
+    "Conversion",
+    "CycleTable",
+    "CylinderTable",
+    "Dimension",
+    "DriveTable",
+    "InertiaTable",
+    "Key",
+    "LimitsTable",
+    "OptimiseTable",
+    "RequirementTable",
+    "Study",
+    "SumTable",
+    "Table",
+    "TomlFile",
+    "TrajectoryTable",
+    "WaypointPathTable",
+    "WaypointTable",
+    "adept_cycle",
+    "changes",
+    "cycle_question",
+    "design_question",
+    "digest_of",
+    "read_toml",
+    "refused_field",
+    "study_names",
+    "study_path",
+    "table_of",
+    "told_at_key",
+    "travelled",
+]

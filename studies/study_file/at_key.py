@@ -1,0 +1,94 @@
+"""Errors of what a study asks to be computed, told at the key of its file that asks for it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from kinematics import InvalidValue, LinkwrightError, UnreachablePose
+from studies.errors import ApproachFailed, HomeOutOfReach, KeyPath, Problem, StudyError, dotted, spelled
+from studies.study_file.toml_file import TomlFile, read_toml
+from trajectory import LimitsExceeded, PathBeyondLimit, PathRefused, RoughPath, TimingFailed
+
+_RECORDS: dict[str, KeyPath] = {
+    "Limits": ("trajectory", "limits"),
+    "Trajectory": ("trajectory",),
+    "Drive": ("trajectory", "drive"),
+    "DriveTrain": ("inertia", "drive_train"),
+}
+_OF_THE_PATH = (PathRefused, RoughPath, UnreachablePose)
+_OF_THE_LIMITS = (LimitsExceeded, TimingFailed)
+
+
+class StudyFailed(LinkwrightError):
+    """What a study asks for cannot be computed: `cause` says why, and its exit status stays."""
+
+    def __init__(self, file: TomlFile, path: KeyPath, cause: LinkwrightError) -> None:
+        self.file, self.key, self.cause = file.path, dotted(path), cause
+        self.exit_status = cause.exit_status
+        super().__init__(f"{file.path}:{file.line(path)}: {self.key}: {cause}")
+
+
+@contextmanager
+def told_at_key(study_file: Path) -> Iterator[None]:
+    """Raise the errors of paths, timing, limits and drives again, with their place in the study file.
+
+    Raises:
+        StudyError: a value of the file that a field of a record refuses.
+        StudyFailed: a path or limits that do not go with the rest.
+    """
+    try:
+        yield
+    except ApproachFailed as error:
+        file = read_toml(study_file)
+        raise StudyFailed(file, ("trajectory", "approach"), error) from error
+    except HomeOutOfReach as error:
+        raise _of_home(read_toml(study_file), error) from error
+    except PathBeyondLimit as error:
+        file = read_toml(study_file)
+        raise StudyFailed(file, _spelling(file, ("trajectory", "limits", error.limit)), error) from error
+    except (InvalidValue, *_OF_THE_PATH, *_OF_THE_LIMITS) as error:
+        file = read_toml(study_file)
+        if isinstance(error, InvalidValue):
+            if (problem := refused_field(file, error)) is not None:
+                raise StudyError([problem]) from error
+            if not error.what.startswith("path "):
+                raise
+        at_limits = isinstance(error, _OF_THE_LIMITS)
+        raise StudyFailed(file, ("trajectory", "limits") if at_limits else travelled(file), error) from error
+
+
+def refused_field(file: TomlFile, error: InvalidValue, why: str = "") -> Problem | None:
+    """What a record's field refuses, at its key; None where the error is of no record that a study fills.
+
+    `why` stands behind what was found.
+    """
+    record, _, field = error.what.partition(" ")
+    if record not in _RECORDS:
+        return None
+    name, _, of = field.partition(" ")
+    path = _spelling(file, (*_RECORDS[record], name))
+    try:
+        found = spelled(file.value(path))
+    except LookupError:
+        found = "nothing"
+    return file.problem(path, " ".join(filter(None, (found, of, why))), error.expected)
+
+
+def _spelling(file: TomlFile, path: KeyPath) -> KeyPath:
+    """The key as the file has it, with a suffix of a unit if that is so."""
+    known = (other for other in file.lines if other[:-1] == path[:-1] and str(other[-1]).startswith(f"{path[-1]}_"))
+    return path if path in file.lines else next(known, path)
+
+
+def _of_home(file: TomlFile, error: HomeOutOfReach) -> StudyError:
+    given = next((path for path in file.lines if path[0] == "home"), None)
+    found = spelled(file.value(given)) if given else f"none, so the default {error.shown}"
+    return StudyError([file.problem(given or ("home",), found, f"a home in reach ({error.cause})")])
+
+
+def travelled(file: TomlFile) -> KeyPath:
+    """The key of what is travelled; the region's where there is no such key."""
+    known: list[KeyPath] = [("trajectory", name) for name in ("cycle", "path")]
+    return next((key for key in known if key in file.lines), ("region",))

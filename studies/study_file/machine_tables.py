@@ -1,0 +1,41 @@
+"""The machine beside its geometry: masses, drives, joint ranges; what is left out is the mechanism's own."""
+
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from studies.study_file.table import StudyTable, gathered, table_of
+from studies.study_file.units import Key
+
+Numbers = float | tuple[float, ...]
+Ranges = dict[str, Numbers | tuple[tuple[float, float], ...]]
+"""By the fields of the mechanism's `Ranges` [m or rad]."""
+
+
+class DriveTrainTable(StudyTable):
+    """What stands behind each actuator, as in `kinematics.DriveTrain`; None for its default."""
+
+    gear_ratio: Annotated[
+        Numbers | None, Key("a number > 0, or one a joint (rad of the motor for one rad, or one m, of the joint)")
+    ] = None
+    """Through it the motor's inertia and speed are felt."""
+    motor_inertia: Annotated[Numbers | None, Key("a number >= 0, or one a joint (kg m^2)")] = None
+    """Of the rotor, on its own side of the gear."""
+    coulomb: Annotated[Numbers | None, Key("a number >= 0, or one a joint (N m, or N)")] = None
+    """Dry friction, at the joint."""
+    viscous: Annotated[Numbers | None, Key("a number >= 0, or one a joint (N m s/rad, or N s/m)")] = None
+    """Friction for each unit of speed, at the joint; the law `toppra` refuses it."""
+
+
+class InertiaTable(StudyTable):
+    """What moves."""
+
+    masses: dict[str, Numbers] = Field(default_factory=dict)
+    """By the fields of the mechanism's `Inertia` [SI]."""
+    drive_train: Annotated[DriveTrainTable, table_of(DriveTrainTable)] = DriveTrainTable()
+    """What stands behind each actuator."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _gather_masses(cls, data: Any) -> Any:
+        return gathered(cls, data, "masses")

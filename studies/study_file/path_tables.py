@@ -1,0 +1,134 @@
+"""What a study's tool travels: a pick-and-place cycle, or a path through waypoints."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+
+from kinematics import InvalidValue
+from studies.study_file.table import Name, Positive, StudyTable, gathered, table_of
+from studies.study_file.units import Dimension, Key
+from trajectory import STANDARD_SIZES, AdeptCycle
+
+LENGTH, ANGLE = Dimension.LENGTH, Dimension.ANGLE
+_NOT_OF_THE_PATH = ("size", "place", "payload", "payload_back")
+
+
+class CycleTable(StudyTable):
+    """The pick-and-place cycle: up by `lift`, across by `span`, down by `place_lift`, and back [m, rad, kg].
+
+    A `size` stands for the three, a `place` for `span`, `heading` and `rise`.
+    """
+
+    pick: Annotated[tuple[float, float, float], Key("three lengths x, y, z", LENGTH, place=True)]
+    """Where the cycle starts."""
+    size: Annotated[str | None, Key("one of", choices=tuple(STANDARD_SIZES))] = None
+    """Lift, span and place lift at once [mm]; a size says nothing of the corners, so it needs a blend beside it."""
+    place: Annotated[
+        tuple[float, float, float] | None,
+        Key("three lengths x, y, z, not above the pick; no size beside it", LENGTH, place=True),
+    ] = None
+    """Where the half cycle ends, in place of span, heading and rise."""
+    lift: Annotated[
+        Positive | None, Field(validate_default=True), Key("a length > 0, or a size instead of it", LENGTH)
+    ] = None
+    """Height of the vertical leg above the pick."""
+    span: Annotated[
+        Positive | None, Field(validate_default=True), Key("a length > 0, or a size or a place instead of it", LENGTH)
+    ] = None
+    """Horizontal distance from pick to place."""
+    place_lift: Annotated[Positive | None, Key("a length > 0; no size beside it", LENGTH)] = None
+    """Height of the vertical leg above the place; None for the lift."""
+    rise: Annotated[float, Key("a length, how much higher the place is; no place beside it", LENGTH, place=True)] = 0.0
+    """Place above pick."""
+    heading: Annotated[float, Key("an angle; no place beside it", ANGLE)] = 0.0
+    """Direction of the span about z, from x."""
+    blend: Annotated[
+        Positive, Key("a length > 0, at most the lift and at most half the span; needed beside a size, too", LENGTH)
+    ]
+    """What a corner takes off each of its legs."""
+    turn: Annotated[float, Key("an angle", ANGLE)] = 0.0
+    """Change of theta, or yaw, from pick to place."""
+    start_angle: Annotated[float, Key("an angle", ANGLE)] = 0.0
+    """Theta, or yaw, at the pick."""
+    tilt: Annotated[tuple[float, float], Key("two angles, roll and pitch at the place", ANGLE)] = (0.0, 0.0)
+    """From level at the pick; only where the pose has roll and pitch."""
+    payload: Annotated[float, Field(ge=0), Key("a mass >= 0 (kg); payload_back for another one on the way back")]
+    """At the tool."""
+    payload_back: Annotated[float | None, Field(ge=0), Key("a mass >= 0 (kg)")] = None
+    """On the way back; None for the same."""
+
+    @field_validator("size")
+    @classmethod
+    def _size_known(cls, size: str | None) -> str | None:
+        if size is not None and size not in STANDARD_SIZES:
+            raise ValueError("no standard size")
+        return size
+
+    @field_validator("lift", "span", "place", "place_lift")
+    @classmethod
+    def _once(cls, value: Any, info: ValidationInfo) -> Any:
+        given = [info.data.get("size")] + ([info.data.get("place")] if info.field_name == "span" else [])
+        stated = [v for v in (value, *given) if v is not None]
+        if len(stated) > 1 or (not stated and info.field_name in ("lift", "span")):
+            raise ValueError("given twice, or not at all")
+        if info.field_name == "place" and value is not None and value[:2] == info.data.get("pick", ())[:2]:
+            raise ValueError("above the pick")
+        return value
+
+    @field_validator("rise", "heading")
+    @classmethod
+    def _not_with_place(cls, value: float, info: ValidationInfo) -> float:
+        if value != 0.0 and info.data.get("place") is not None:
+            raise ValueError("the place says it")
+        return value
+
+    @field_validator("blend")
+    @classmethod
+    def _blend_fits(cls, blend: float, info: ValidationInfo) -> float:
+        if not {"size", "place", "lift", "span", "place_lift", "rise", "heading", "pick"} <= info.data.keys():
+            return blend  # what is wrong with those is told already
+        try:
+            adept_cycle({**info.data, "blend": blend})
+        except InvalidValue as error:
+            raise ValueError(str(error)) from error
+        return blend
+
+
+def adept_cycle(cycle: Mapping[str, Any], **others: Any) -> AdeptCycle:
+    """The path there, from the fields of a `Cycle`.
+
+    Raises:
+        InvalidValue: the corners do not fit, or the pose has no such angles.
+    """
+    given = {k: v for k, v in cycle.items() if v is not None and k not in _NOT_OF_THE_PATH} | others
+    if cycle["place"] is not None:
+        return AdeptCycle.between(
+            **{k: v for k, v in given.items() if k not in ("heading", "rise")}, place=cycle["place"]
+        )
+    return AdeptCycle(**given) if cycle["size"] is None else AdeptCycle.of_size(cycle["size"], **given)
+
+
+class WaypointTable(StudyTable):
+    """A pose, and the blend of the corner there; an angle that is left out is left to its neighbours."""
+
+    coordinates: dict[str, float]
+    """By the pose's names [m or rad]."""
+    blend: Annotated[float, Field(ge=0), Key("a length >= 0", LENGTH)] = 0.0
+    """What the corner takes off both of its legs; 0 stops there, unless the path goes straight on."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _gather_coordinates(cls, data: Any) -> Any:
+        return gathered(cls, data)
+
+
+class WaypointPathTable(StudyTable):
+    """A path through waypoints, from a CSV file beside the study or from the study itself."""
+
+    file: Annotated[Name | None, Key("the name of a CSV file, or waypoints instead of it")] = None
+    """Beside the study."""
+    waypoint: Annotated[tuple[WaypointTable, ...], table_of(WaypointTable, rows=True)] = ()
+    """In order; those of the file where one is given."""
+    payload: Annotated[float, Field(ge=0), Key("a mass >= 0 (kg)")]
+    """At the tool, both ways."""

@@ -1,0 +1,46 @@
+"""What every table of a study file shares: strict frozen models, the kinds of their values, the keys that they take."""
+
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
+from studies.study_file.units import Key, Table
+
+
+def _rising(pair: tuple[float, float]) -> tuple[float, float]:
+    if pair[0] >= pair[1]:
+        raise ValueError("low must be below high")
+    return pair
+
+
+Positive = Annotated[float, Field(gt=0)]
+Interval = Annotated[tuple[float, float], AfterValidator(_rising)]
+PerJoint = Positive | Annotated[tuple[Positive, ...], Field(min_length=1)]
+Name = Annotated[str, Field(min_length=1)]
+
+
+class StudyTable(BaseModel):
+    """A table of the file: no key beside its fields, no number that is not finite, nothing converted."""
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", strict=True, allow_inf_nan=False, use_attribute_docstrings=True
+    )
+
+
+def table_of(model: type[BaseModel], rows: bool = False) -> Table:
+    """The keys that `model` takes from a file: its fields annotated with a Key or a Table."""
+    keys = {
+        name: node
+        for name, field in model.model_fields.items()
+        for node in field.metadata
+        if isinstance(node, Key | Table)
+    }
+    return Table(keys, rows)
+
+
+def gathered(model: type[BaseModel], data: Any, name: str = "coordinates") -> Any:
+    """`data` of a file with the keys that are not the model's own gathered in its field `name`."""
+    if not isinstance(data, dict) or name in data:
+        return data
+    own = {key: value for key, value in data.items() if key in model.model_fields}
+    return own | {name: {key: data[key] for key in data if key not in own}}

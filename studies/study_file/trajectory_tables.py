@@ -1,0 +1,124 @@
+"""How a study's cycle is timed: limits, law, approach, and the files for the drives."""
+
+from typing import Annotated, Literal, get_args
+
+from pydantic import Field, ValidationInfo, field_validator
+
+from studies.study_file.path_tables import CycleTable, WaypointPathTable
+from studies.study_file.table import Interval, Name, PerJoint, Positive, StudyTable, table_of
+from studies.study_file.units import Dimension, Key
+
+
+class LimitsTable(StudyTable):
+    """What each joint can do: a number for all joints, or one a joint; None is no limit."""
+
+    speed: Annotated[PerJoint, Key("a speed > 0, or one a joint", Dimension.JOINT_SPEED)]
+    """Of the joints."""
+    acceleration: Annotated[PerJoint | None, Key("a number > 0, or one a joint (rad/s^2, or m/s^2)")] = None
+    """Of the joints."""
+    torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
+    """Peak of the drives."""
+    jerk: Annotated[PerJoint | None, Key("a number > 0, or one a joint (rad/s^3, or m/s^3)")] = None
+    """Of the joints; the law `jerk` needs one, `toppra` keeps none."""
+    tool_speed: Annotated[Positive | None, Key("a speed > 0 (m/s)")] = None
+    """Of the tool point."""
+    tool_acceleration: Annotated[Positive | None, Key("an acceleration > 0 (m/s^2)")] = None
+    """Of the tool point."""
+    position: Annotated[
+        Interval | Annotated[tuple[Interval, ...], Field(min_length=1)] | None,
+        Key("low < high, or one such pair a joint (rad, or m)", place=True),
+    ] = None
+    """Of the joints; the path alone decides whether it is kept."""
+    stall_torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
+    """With no_load_speed: abs(torque) <= stall_torque (1 - abs(speed) / no_load_speed)."""
+    no_load_speed: Annotated[
+        PerJoint | None,
+        Field(validate_default=True),
+        Key("a speed > 0, or one a joint, if and only if there is a stall_torque", Dimension.JOINT_SPEED),
+    ] = None
+    """Both or neither: the ends of the speed-torque line."""
+    rms_torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
+    """Root mean square of each way by itself, and so of the cycle; not with the law `toppra`."""
+
+    @field_validator("no_load_speed")
+    @classmethod
+    def _whole_line(cls, speed: PerJoint | None, info: ValidationInfo) -> PerJoint | None:
+        if "stall_torque" in info.data and (info.data["stall_torque"] is None) != (speed is None):
+            raise ValueError("half of a line")
+        return speed
+
+
+File = Literal["csv", "ros2", "cia402", "zaber", "xps", "pmac"]
+FILES = get_args(File)
+Increments = Annotated[int, Field(gt=0)]
+LAWS = ("jerk", "toppra", "free")
+
+
+class ApproachTable(StudyTable):
+    """What the joints may do on the jerk-limited move from home to the cycle's start."""
+
+    speed: Annotated[PerJoint, Key("a speed > 0, or one a joint", Dimension.JOINT_SPEED)]
+    """Of the joints."""
+    acceleration: Annotated[PerJoint, Key("a number > 0, or one a joint (rad/s^2, or m/s^2)")]
+    """Of the joints."""
+    jerk: Annotated[PerJoint, Key("a number > 0, or one a joint (rad/s^3, or m/s^3)")]
+    """Of the joints."""
+
+
+class DriveTable(StudyTable):
+    """What the drive files need of the machine; a value for all axes, or one an axis."""
+
+    axes: Annotated[Annotated[tuple[Name, ...], Field(min_length=1)] | None, Key("a list of names, one a joint")] = None
+    """Each format's own where None."""
+    increments: Annotated[
+        Increments | Annotated[tuple[Increments, ...], Field(min_length=1)] | None,
+        Key("a whole number > 0, or one a joint (in a turn of the encoder, or in a metre on a rail)"),
+    ] = None
+    """Of the encoder; `cia402` needs it."""
+    encoder_gear: Annotated[
+        float | Annotated[tuple[float, ...], Field(min_length=1)],
+        Key("a number other than 0, or one a joint (turns of the encoder for one of the joint)"),
+    ] = 1.0
+    """Negative where it counts the other way."""
+
+
+class TrajectoryTable(StudyTable):
+    """How the cycle is timed, and how its set-points are sampled."""
+
+    law: Annotated[Literal["jerk", "toppra", "free"], Key("one of", choices=LAWS)] = "jerk"
+    """How it is timed; `toppra` keeps no jerk limit, `free` finds the path too."""
+    grid: Annotated[int, Field(ge=1000, le=1_000_000), Key("a whole number from 1000 to 1000000")] = 2000
+    """Points along the path, at first: the law `toppra` adds what it needs."""
+    period: Annotated[Positive, Field(le=1.0), Key("a time > 0, at most 1 (s)")] = 0.001
+    """Of the set-points [s]."""
+    cycle: Annotated[CycleTable | None, table_of(CycleTable)] = None
+    """What is travelled, or a path."""
+    path: Annotated[WaypointPathTable | None, Field(validate_default=True), table_of(WaypointPathTable)] = None
+    """What is travelled, or a cycle."""
+    limits: Annotated[LimitsTable, table_of(LimitsTable)]
+    """What the drives and the tool may do."""
+    approach: Annotated[ApproachTable | None, table_of(ApproachTable)] = None
+    """The move from home to the start; None leaves it out."""
+    files: Annotated[Annotated[tuple[File, ...], Field(min_length=1)], Key("a list out of", choices=FILES)] = ("csv",)
+    """Formats of the set-points."""
+    drive: Annotated[DriveTable, table_of(DriveTable)] = DriveTable()
+    """What the drive files need of the machine."""
+
+    @field_validator("path")
+    @classmethod
+    def _one_of_two(cls, path: WaypointPathTable | None, info: ValidationInfo) -> WaypointPathTable | None:
+        if "cycle" in info.data and (path is None) == (info.data["cycle"] is None):
+            raise ValueError("either a cycle or a path")
+        return path
+
+    @property
+    def payload(self) -> float:
+        """Mass at the tool [kg]."""
+        asked = self.cycle or self.path
+        assert asked is not None
+        return asked.payload
+
+    @property
+    def payload_back(self) -> float | None:
+        """Mass on the way back [kg]; None for the same."""
+        return self.cycle.payload_back if self.cycle else None

@@ -1,0 +1,55 @@
+"""The mechanism's picture: in the region, in equal scales, of a robot of any size."""
+
+from __future__ import annotations
+
+import warnings
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from design import Box, Cylinder, Region
+from kinematics import MECHANISMS, Delta, Heli4, Mechanism
+from studies.report import plots
+
+SMALL_DELTA = Delta(Delta.Geometry(base_radius=0.13201, platform_radius=0.0332, arm_length=0.112, rod_length=0.232))
+BELOW = Box(x=(-0.04, 0.04), y=(-0.04, 0.04), z=(-0.25, -0.2))
+
+
+def drawn(robots: dict[str, Mechanism], region: Region) -> Figure:
+    with patch.object(plots, "png", lambda figure: figure), warnings.catch_warnings():
+        warnings.simplefilter("error")
+        figure = plots.mechanism_picture(robots, region)
+    assert isinstance(figure, Figure)
+    return figure
+
+
+def around_home(robot: Mechanism) -> Region:
+    return Box(**{n: (h - 0.01, h + 0.01) for n, h in zip(robot.pose_names, robot.home.tolist(), strict=True)})
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_a_metre_is_as_long_on_every_axis(name: str) -> None:
+    robot = MECHANISMS[name]()
+    (axes,) = drawn({"result": robot}, around_home(robot)).axes
+    lengths = np.ptp([axes.get_xlim3d(), axes.get_ylim3d(), axes.get_zlim3d()], axis=1)
+    assert axes.get_box_aspect() / axes.get_box_aspect().max() == pytest.approx(lengths / lengths.max(), rel=1e-6)
+    assert np.all(lengths > 0.0)
+
+
+@pytest.mark.parametrize(
+    ("robot", "region"),
+    [(SMALL_DELTA, BELOW), (Heli4(), Cylinder(radius=0.3, z=(-0.85, -0.8), theta=(-1.0, 1.0)))],
+)
+def test_the_robot_stands_in_the_region_within_its_reach(robot: Mechanism, region: Region) -> None:
+    pose = plots.pose_in(robot, region)
+    assert region.contains(pose, robot.pose_names)
+    assert np.isfinite(robot.inverse(pose)).all()
+
+
+def test_a_robot_that_reaches_no_pose_of_the_region_is_drawn_as_far_as_it_can_be() -> None:
+    far = Box(x=(2.0, 2.1), y=(0.0, 0.1), z=(-0.3, -0.2))
+    left, right = drawn({"given": SMALL_DELTA, "result": Delta()}, far).axes
+    assert left.get_xlim3d() == right.get_xlim3d()
+    assert left.get_xlim3d()[1] >= 2.1

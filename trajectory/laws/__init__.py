@@ -1,0 +1,1 @@
+"""Timing laws, one room each."""

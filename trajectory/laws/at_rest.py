@@ -1,0 +1,70 @@
+"""What a path asks for however it is travelled: the joints' positions, and the torque of the weight where it rests."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinematics import Array, Mechanism, inverse_dynamics, to_actuators
+from trajectory.errors import PathBeyondLimit
+from trajectory.limits import Limits
+from trajectory.paths import Path
+
+_ROUNDING = 1e-9  # relative
+
+
+def require_possible(robot: Mechanism, path: Path, limits: Limits, payload: float, s: Array) -> None:
+    """Check the joints' position along a path, and the torque of the weight at both of its ends, where it rests.
+
+    In between a motion may pass where the drives could not hold it.
+
+    Args:
+        robot: that reaches every pose of the path.
+        path: of its poses.
+        limits: of which position, torque and stall torque are looked at.
+        payload: mass at the tool [kg].
+        s: (k,) arc lengths where the position is looked at [m].
+
+    Raises:
+        PathBeyondLimit: a joint is beyond its range, or needs more torque at rest than it has.
+    """
+    count = len(robot.joint_names)
+    if (ranges := limits.ranges(count)) is not None:
+        (poses,) = path.evaluate(s, 0)
+        _require(robot, path, "position", s, to_actuators(robot, robot.inverse(poses)), ranges)
+    require_held(robot, path, limits, payload, np.array([0.0, path.length]))
+
+
+def require_held(robot: Mechanism, path: Path, limits: Limits, payload: float, s: Array) -> None:
+    """Check the torque of the weight at rest.
+
+    Args:
+        robot, path, limits, payload: as for `require_possible`.
+        s: (k,) arc lengths [m].
+
+    Raises:
+        PathBeyondLimit: a joint needs more torque at rest than it has.
+    """
+    (poses,) = path.evaluate(s, 0)
+    rest = np.zeros_like(poses)
+    for name in ("torque", "stall_torque"):
+        if (most := limits.of_joints(name, len(robot.joint_names))) is not None:
+            _require(robot, path, name, s, inverse_dynamics(robot, payload, poses, rest, rest), (-most, most))
+
+
+def _require(robot: Mechanism, path: Path, limit: str, s: Array, values: Array, ranges: tuple[Array, Array]) -> None:
+    """Raise for the value that is furthest beyond its range, over the range's width."""
+    low, high = ranges
+    beyond = np.maximum(low - values, values - high) / (high - low)
+    k, joint = np.unravel_index(int(beyond.argmax()), beyond.shape)
+    if beyond[k, joint] > _ROUNDING:
+        unit, at = robot.actuator_units[joint], float(s[k])
+        raise PathBeyondLimit(
+            limit,
+            robot.actuator_names[joint],
+            at,
+            path.evaluate(s[k], 0)[0].tolist(),
+            float(values[k, joint]),
+            (float(low[joint]), float(high[joint])),
+            unit if limit == "position" else {"rad": "N m", "m": "N"}[unit],
+            path.waypoint(at),
+        )

@@ -1,0 +1,109 @@
+"""An emergency stop along the path: from any instant of a motion to rest, on the way that it was on.
+
+The motion is travelled at a pace that falls from 1 to 0: where a limit of the jerk is given, with a continuous
+acceleration (`smooth_braking`), and else in the shortest way, with steps where braking starts and where it ends
+(`braking`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from kinematics import Array, InvalidValue, Mechanism
+from trajectory.errors import LimitsExceeded, TimingFailed
+from trajectory.limits import Limits
+from trajectory.motions import PacedMotion, TimedMotion, TimeLaw
+from trajectory.stops.braking import braking
+from trajectory.stops.smooth_braking import smooth_braking
+from trajectory.verification import Verification, verify
+
+_MARGINS = (1e-3, 4e-3, 1e-2, 3e-2)  # of the limits: the first with which they are proved between the knots too
+_LATER = 2  # knots of the motion at which braking may start where it does not succeed at once
+_BRAKING = ("acceleration", "torque", "tool_acceleration", "jerk")
+
+
+@dataclass(frozen=True, eq=False)
+class EmergencyStop:
+    """A stop that was verified.
+
+    Attributes:
+        motion: from the state at `start` to rest.
+        start: when it interrupts the motion [s].
+        verification: of the stop, and that it takes over the motion at `start`.
+    """
+
+    motion: PacedMotion
+    start: float
+    verification: Verification
+
+    @property
+    def duration(self) -> float:
+        """From the start of the braking to rest [s]."""
+        return self.motion.duration
+
+    @property
+    def pose(self) -> Array:
+        """(n,) where it rests."""
+        return self.motion.ends[1]
+
+
+def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float) -> EmergencyStop:
+    """A stop on the motion's own way, within every limit but the RMS torque's, which is of whole ways.
+
+    Without a limit of the jerk it is the shortest one; with one, the mean square of its pace over the way is small, and
+    where none is found from `start` it goes on to the motion's next knot, or the one after, and brakes from there.
+
+    Args:
+        robot: any mechanism with the motion's kind of pose.
+        timed: a motion within these limits.
+        start: when it interrupts the motion, inside (0, T) [s].
+        limits: of joints and tool.
+        payload: mass at the tool [kg].
+
+    Raises:
+        InvalidValue: a start at which there is no motion, or nothing that limits the braking.
+        LimitsExceeded: the stop breaks a limit, as where the motion already does.
+        TimingFailed: no pace was found that keeps the limits of the jerk.
+    """
+    if not 0.0 < start < timed.duration:
+        raise InvalidValue("start of an emergency stop", start, f"inside (0, {timed.duration:.6g}) s")
+    if all(getattr(limits, name) is None for name in _BRAKING):
+        raise InvalidValue("Limits for an emergency stop", limits.as_dict(), f"one of {', '.join(_BRAKING)}")
+    kept, before = replace(limits, rms_torque=None), timed.at(np.array(start))
+    why: list[LimitsExceeded | TimingFailed] = []
+    margins = (0.0,) if limits.jerk is None else _MARGINS
+    later = timed.times[(timed.times > start) & (timed.times < timed.duration)][:_LATER]
+    for passed, margin in product(range(later.size + 1), margins):
+        cruise = np.append(start, later[:passed])
+        try:
+            pace = _pace(robot, timed, cruise[-1], kept, payload, margin)
+            motion = PacedMotion(timed, _after(cruise, pace))
+        except TimingFailed as failed:
+            why.append(failed)
+            continue
+        found = verify(robot, motion, kept, payload, before)
+        if found.ok:
+            return EmergencyStop(motion, start, found)
+        why.append(LimitsExceeded(found.failures, 1.0))
+    raise why[-1]
+
+
+def _after(cruise: Array, pace: TimeLaw) -> TimeLaw:
+    """The pace from the last of these times (k + 1,) of the motion on, and the motion's own up to there."""
+    held, none = np.ones(cruise.size - 1), np.zeros(cruise.size - 1)
+    return TimeLaw(
+        pace.name,
+        np.append(cruise[:-1] - cruise[0], pace.times + (cruise[-1] - cruise[0])),
+        np.append(cruise[:-1], pace.position),
+        np.append(held, pace.speed),
+        *(np.append(none, part) for part in (pace.acceleration, pace.jerk, pace.snap)),
+    )
+
+
+def _pace(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float, margin: float) -> TimeLaw:
+    if limits.jerk is None:
+        return braking(robot, timed, start, limits, payload)
+    return smooth_braking(robot, timed, start, limits, payload, margin)

@@ -1,0 +1,19 @@
+"""Independent verification of a motion: it imports nothing from what made it."""
+
+from trajectory.verification.limit_usage import uses
+from trajectory.verification.path_certificate import PathCertificate, Way, certify_path, worst_of
+from trajectory.verification.sampling import integrals, parts_of
+from trajectory.verification.verification import Peak, Verification, verify
+
+__all__ = [
+    "PathCertificate",
+    "Peak",
+    "Verification",
+    "Way",
+    "certify_path",
+    "integrals",
+    "parts_of",
+    "uses",
+    "verify",
+    "worst_of",
+]

@@ -1,0 +1,89 @@
+"""Proof that a motion keeps its limits at every instant: upper bounds of its use of them, over parts that cover it.
+
+A part's use is at most that in its middle with the slack of `enclosure` on top. Parts whose bound is well above the
+highest use seen anywhere are cut again, until each bound is close to what is really used.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinematics import Array, Mechanism
+from trajectory.limits import Limits
+from trajectory.motions import TimedMotion, motion_of
+from trajectory.verification.enclosure import slack
+from trajectory.verification.limit_usage import uses
+
+_PARTS = 4000  # of the whole motion at first, about
+_CLOSE = 2e-5  # relative: by how much a bound may exceed the highest use seen
+_LITTLE = 1e-6  # of a limit: no bound need be closer to what stands still
+_CUTS = 4  # of a part that is cut
+_ROUNDS = 6  # of cutting; what is still open then keeps its bound
+_SLACK = 1e-11  # relative: more than what evaluation in double arithmetic is off by
+_RMS = "rms torque"
+
+
+def proved_use(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float) -> dict[str, float]:
+    """Upper bounds over the whole motion of each limited quantity over its limit; infinite where none was found.
+
+    What the jerk is between two intervals, where the acceleration may jump, is not spoken of.
+
+    Args:
+        robot, timed, limits, payload: as for `verify`.
+    """
+    low, high = _parts(timed)
+    seen: dict[str, float] = {}
+    bounds: dict[str, float] = {}
+    squares = np.zeros(len(robot.actuator_names))
+    for round_ in range(_ROUNDS + 1):
+        motion = motion_of(robot, timed.at(0.5 * low + 0.5 * high), payload)
+        away = slack(robot, timed, payload, low, high)
+        least = {name: use.ratio for name, use in uses(robot, motion, limits).items() if use.ratio is not None}
+        most = {
+            name: use.ratio for name, use in uses(robot, motion, limits, away.motion).items() if use.ratio is not None
+        }
+        open_ = np.zeros(low.size, dtype=bool)
+        for name, ratio in least.items():
+            seen[name] = max(seen.get(name, 0.0), float(np.nan_to_num(ratio, nan=0.0).max()))
+            if round_ < _ROUNDS:
+                open_ |= ~(most[name] <= max(seen[name] * (1.0 + _CLOSE), _LITTLE)).all(axis=-1)
+        closed = ~open_
+        for name, ratio in most.items():
+            highest = float(np.nan_to_num(ratio[closed], nan=np.inf).max(initial=0.0)) * (1.0 + _SLACK)
+            bounds[name] = max(bounds.get(name, 0.0), highest)
+        parts = (high - low, np.abs(motion.torque), away.motion.torque, away.mean_torque)
+        squares += _squares(*(part[closed] for part in parts))
+        if closed.all():
+            break
+        low, high = _cut(low[open_], high[open_])
+    if (limit := limits.of_joints("rms_torque", squares.size)) is not None:
+        bounds[_RMS] = float((np.sqrt(squares / timed.duration) / limit).max())
+    return bounds
+
+
+def _parts(timed: TimedMotion) -> tuple[Array, Array]:
+    """(k,) starts and ends, none of which crosses a knot; at least one an interval."""
+    lengths = np.diff(timed.times)
+    shares = np.maximum(lengths / timed.duration, np.diff(timed.progress))
+    counts = np.ceil(shares * _PARTS).astype(int)
+    interval = np.repeat(np.arange(counts.size), counts)
+    place = np.arange(interval.size) - np.repeat(np.cumsum(counts) - counts, counts)
+    step = lengths[interval] / counts[interval]
+    low = timed.times[interval] + place * step
+    last = place + 1 == counts[interval]
+    return low, np.where(last, timed.times[interval + 1], low + step)
+
+
+def _cut(low: Array, high: Array) -> tuple[Array, Array]:
+    edges = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, _CUTS + 1)
+    edges[:, -1] = high
+    return edges[:, :-1].ravel(), edges[:, 1:].ravel()
+
+
+def _squares(lengths: Array, torque: Array, away: Array, mean: Array) -> Array:
+    """(m,) upper bounds of the integral of the squared torque, from its size in the middle of each part.
+
+    With e what is on top of that, the square's mean is tau^2 + 2 tau (mean of e) + the mean of e^2.
+    """
+    found: Array = lengths @ (torque**2 + 2.0 * torque * mean + away**2)
+    return found

@@ -1,0 +1,190 @@
+"""Proof that a robot reaches every pose of a path and is singular at none, over intervals of the arc length.
+
+On an interval of s the path gives bounds of the pose and of its derivative. An interval kernel, rounded outward, bounds
+each margin over that box, and its gradient, which with the path's derivative bounds the slope f' along the path: so
+f(s) >= f(m) - max |f'| r, m the middle and r half of the interval (the centred form), or the natural bound where that
+is better. Intervals are halved until their bound is close to the lowest value seen.
+
+What it rests on: the kernel's assumptions (`kinematics/evaluation/interval_interpreter.py`), and that a path evaluated
+in double arithmetic is
+right to 1e-12, by which its bounds are widened.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from kinematics import (
+    Array,
+    BoxProgram,
+    Mechanism,
+    Program,
+    RodLevel,
+    determinant,
+    enclose,
+    rounded_down,
+    sides,
+    volume,
+)
+from trajectory.errors import PathRefused
+from trajectory.motions import InTime
+from trajectory.paths import Path, PathBox, require_poses_of
+
+Way = Path | InTime
+_START = 64  # intervals, at least, that the path is cut into first
+_SHARE = 0.9  # of the lowest value seen, that a bound must reach
+_SMALLEST = 1e-9  # of the length: narrower intervals are not halved
+_MOST = 200_000  # intervals
+_MODULI = ("J_q", "det_J_x", "internal_determinant")
+_UP = 1.0 + 2.0**-48  # covers the roundings of products and of their sum over fewer than ten coordinates
+
+
+@dataclass(frozen=True)
+class PathCertificate:
+    """What holds at every pose of a path.
+
+    Attributes:
+        margins: proved lower bounds, all above 0, of reach [m], of the room to the joints' limits
+            [rad or m], of the normalised |J_q| and |det J_x| and, where single rods hold the platform's orientation, of
+            the internal determinant.
+        intervals: how many intervals of s the proof took.
+    """
+
+    margins: dict[str, float]
+    intervals: int
+
+    def rows(self) -> list[tuple[str, str]]:
+        """Each margin and its bound, rounded down, for people."""
+        return [(name, rounded_down(bound, 4)) for name, bound in self.margins.items()]
+
+
+def certify_path(robot: Mechanism, path: Way) -> PathCertificate:
+    """Prove that every pose of a path is within reach and away from the singularities.
+
+    Args:
+        robot: any mechanism with the path's kind of pose.
+        path: smooth or not.
+
+    Raises:
+        InvalidValue: another kind of pose.
+        PathRefused: a margin is not above 0, or could not be proved to be; arc length, pose and limb are named.
+    """
+    require_poses_of(robot, path)
+    claims = _Claims(robot, path)
+    edges = np.unique(np.concatenate([path.knots, np.linspace(0.0, path.length, _START + 1)]))
+    low, high = edges[:-1], edges[1:]
+    proved, seen = np.full(len(claims.names), np.inf), np.full(len(claims.names), np.inf)
+    count = 0
+    while low.size:
+        count += low.size
+        middle = 0.5 * low + 0.5 * high
+        least, most = claims.bounds(low, high, middle)
+        claims.refuse(most <= 0.0, middle, most, proved=True)
+        seen = np.minimum(seen, most.min(axis=0))
+        done = least >= _SHARE * seen
+        proved = np.minimum(proved, least.min(axis=0, where=done, initial=np.inf))
+        stuck = (high - low <= _SMALLEST * path.length) | (count > _MOST)
+        claims.refuse(stuck[:, None] & ~done, middle, least, proved=False)
+        still = ~done.all(axis=1)
+        low, high, middle = low[still], high[still], middle[still]
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    margins: dict[str, float] = {}
+    for name, bound in zip(claims.names, proved.tolist(), strict=True):
+        margins[name] = min(bound, margins.get(name, np.inf))
+    return PathCertificate(margins, count)
+
+
+def worst_of(certificates: Sequence[PathCertificate]) -> PathCertificate:
+    """What holds on all of several ways."""
+    margins = {name: min(c.margins[name] for c in certificates) for name in certificates[0].margins}
+    return PathCertificate(margins, sum(c.intervals for c in certificates))
+
+
+class _Claims:
+    """Margins that must be above 0 all along the path.
+
+    Moduli are left out: a continuous function that is never 0 keeps the sign that it has at the start.
+    """
+
+    def __init__(self, robot: Mechanism, path: Way) -> None:
+        self.path = path
+        model, fixed = robot.model(), robot.geometry.vector().tolist()
+        (start,) = path.evaluate(np.array(0.0), 0)
+        parts = _margins(robot)
+        symbols = [model.pose, model.geometry]
+        at_start = ca.Function("start", symbols, [ca.vertcat(*(expression for *_, expression in parts))])
+        values = np.array(at_start(start, fixed))[:, 0]
+        kept = np.flatnonzero(values != np.inf)  # a limit at infinity cannot be met
+        self.names = [parts[k][0] for k in kept]
+        self.limbs = [parts[k][1] for k in kept]
+        claims = ca.vertcat(
+            *(-parts[k][2] if parts[k][0] in _MODULI and values[k] < 0.0 else parts[k][2] for k in kept)
+        )
+        gradient = ca.jacobian(claims, model.pose)
+
+        def program(*outputs: ca.SX) -> BoxProgram:
+            function = ca.Function("claims", symbols, ca.cse([ca.densify(o) for o in outputs]))
+            return BoxProgram.of(Program.of(function), fixed)
+
+        self._plain, self._with_gradient = program(claims), program(claims, gradient)
+
+    def bounds(self, low: Array, high: Array, middle: Array) -> tuple[Array, Array]:
+        """(k, claims) lower bounds over intervals of s, and upper bounds in their middle."""
+        box, centre = self.path.enclose(low, high), self.path.enclose(middle, middle)
+        least, most = enclose(self._with_gradient, box.low, box.high)
+        point_least, point_most = enclose(self._plain, centre.low, centre.high)
+        count = len(self.names)
+        natural = least[:, :count]
+        defined = np.isfinite(natural) & np.isfinite(most[:, :count])  # so smooth on all of the box
+        slope = _steepest(least[:, count:], most[:, count:], box, count)
+        half = np.nextafter(np.maximum(high - middle, middle - low), np.inf)[:, None]
+        with np.errstate(invalid="ignore"):
+            centred = point_least - slope * half * _UP
+            centred -= np.abs(centred) * 2.0**-50
+        return np.where(defined & (centred > natural), centred, natural), point_most
+
+    def refuse(self, where: Array, at: Array, values: Array, proved: bool) -> None:
+        """Raise PathRefused for the worst of these (k, claims), of the first margin that has any."""
+        for k in np.flatnonzero(where.any(axis=0)):
+            row = int(np.argmin(np.where(where[:, k], values[:, k], np.inf)))
+            s = float(at[row])
+            (pose,) = self.path.evaluate(np.array(s), 0)
+            limb, near = self.limbs[k], self.path.waypoint(s)
+            raise PathRefused(self.names[k], s, pose.tolist(), limb, float(values[row, k]), proved, near)
+
+
+def _steepest(least: Array, most: Array, box: PathBox, count: int) -> Array:
+    """(k, claims) bound of the modulus of each claim's derivative by s, from its gradient and the path's derivative."""
+    shape = (len(least), count, box.low.shape[1])
+    gradient = [v.reshape(shape) for v in (least, most)]
+    rates = [v[:, None, :] for v in (box.first_low, box.first_high)]
+    with np.errstate(invalid="ignore"):
+        products = np.stack([g * r for g in gradient for r in rates])
+        lowest, highest = products.min(axis=0), products.max(axis=0)
+        rounding = np.maximum(np.abs(lowest), np.abs(highest)).sum(axis=-1) * 2.0**-48
+        slope = np.maximum(np.abs(lowest.sum(axis=-1)), np.abs(highest.sum(axis=-1))) + rounding
+    return np.nan_to_num(slope, nan=np.inf, posinf=np.inf)
+
+
+def _margins(robot: Mechanism) -> list[tuple[str, int | None, ca.SX]]:
+    """Name, limb and expression of each margin; a reach that is the lower of two counts twice."""
+    model = robot.model()
+    q_scale, x_scale = robot.scales(model.g)
+    reach = robot.reach(model.pose, model.g)
+    m, n = model.j_x_at_pose.shape
+    found: list[tuple[str, int | None, ca.SX]] = []
+    for i in range(reach.numel()):
+        found += [("reach", i + 1, side) for side in sides(reach[i])]
+    limits = robot.ranges.limits(m)
+    found += [("joint_travel", i + 1, model.inverse[i] - limits[i, 0]) for i in range(m)]
+    found += [("joint_travel", i + 1, limits[i, 1] - model.inverse[i]) for i in range(m)]
+    found += [("J_q", i + 1, model.j_q_at_pose[i] / q_scale[i]) for i in range(m)]
+    spanned = determinant(model.j_x_at_pose) if m == n else volume(model.j_x_at_pose)
+    found.append(("det_J_x", None, spanned / x_scale))
+    if isinstance(robot, RodLevel):
+        found.append(("internal_determinant", None, robot.internal_determinant_symbolic()))
+    return found
