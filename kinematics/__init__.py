@@ -29,9 +29,9 @@ from kinematics.evaluation import (
     replay,
 )
 from kinematics.machine import UNIFORM, DriveTrain, GeometryRecord, InertiaRecord, JointRanges
-from kinematics.mathematics import adjugate, determinant, segment_gap_symbolic, volume
+from kinematics.margins import CLEARANCE, PASSIVE_JOINT, STANDARD
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
-from kinematics.model import FviBounds, Mechanism, Model, homogeneous, sides
+from kinematics.model import ClaimSymbols, FviBounds, Margin, Measure, Mechanism, Model, ToShow, by_name, sides
 from kinematics.multibody import mjcf
 from kinematics.printed_bounds import rounded_down, rounded_up
 from kinematics.robots import MECHANISMS, Delta, Hexa
@@ -45,13 +45,17 @@ from kinematics.robots.shared import RodLevel
 
 __all__ = [
     "ARCHITECTURES",
+    "CLEARANCE",
     "CORES",
     "MECHANISMS",
+    "PASSIVE_JOINT",
+    "STANDARD",
     "UNIFORM",
     "Architecture",
     "Array",
     "BlockProgram",
     "BoxProgram",
+    "ClaimSymbols",
     "Delta",
     "DriveTrain",
     "FviBounds",
@@ -68,6 +72,8 @@ __all__ = [
     "JointRanges",
     "LinkwrightError",
     "LostPaths",
+    "Margin",
+    "Measure",
     "Mechanism",
     "Model",
     "Op",
@@ -81,19 +87,18 @@ __all__ = [
     "RodLevel",
     "SelfMotion",
     "SingularArchitecture",
+    "ToShow",
     "UnreachablePose",
     "actuator_motion",
-    "adjugate",
     "bulk",
+    "by_name",
     "checked",
     "derivatives_along",
-    "determinant",
     "enclose",
     "evaluate",
     "finite",
     "friction",
     "from_actuators",
-    "homogeneous",
     "inverse_dynamics",
     "joint_motion",
     "loop_mobility",
@@ -105,10 +110,8 @@ __all__ = [
     "replay",
     "rounded_down",
     "rounded_up",
-    "segment_gap_symbolic",
     "sides",
     "to_actuators",
     "torques",
-    "volume",
     "whole",
 ]

@@ -54,13 +54,12 @@ def known_tests() -> dict[str, list[str]]:
 
 @cache
 def names() -> dict[str, object]:
-    """Every module of kinematics and every public name in one."""
-    modules = {
-        m.name.rpartition(".")[2]: importlib.import_module(m.name)
-        for m in pkgutil.walk_packages(kinematics.__path__, "kinematics.")
-    }
+    """Every room of kinematics and every public name in a module."""
+    found = [m.name for m in pkgutil.walk_packages(kinematics.__path__, "kinematics.")]
+    modules = {name: importlib.import_module(name) for name in found}
+    rooms = {name.rpartition(".")[2]: module for name, module in modules.items() if hasattr(module, "__path__")}
     own = {n: v for m in modules.values() for n, v in vars(m).items() if not n.startswith("_")}
-    return {**own, **modules}
+    return {**own, **rooms}
 
 
 def attribute(owner: object, part: str) -> object | None:
@@ -184,9 +183,9 @@ def test_no_equation_is_left_out(page, equation, last):
     [
         ("`Heli4.inverse`, `.forward`", []),
         ("`inverse`, margin `det_J_x`", []),
-        ("`heli4_forward.plates`, `Plates.positions`", []),
+        ("`heli4.forward.plates`, `Plates.positions`", []),
         ("`Heli4.Geometry.pitch`, `block_triangular(...).j_int`", []),
-        ('`architectures.ARCHITECTURES["Delta R-(RR)-(RR)"]`', []),
+        ('`mobility.architectures.ARCHITECTURES["Delta R-(RR)-(RR)"]`', []),
         ("`block_triangular(...).j_out`", ["block_triangular(...).j_out"]),
         ("`Heli4.invers`, `.forwards`", ["Heli4.invers", "Heli4.forwards"]),
         ("`det_J_x`", ["det_J_x"]),

@@ -12,12 +12,13 @@ import casadi as ca
 import numba
 import numpy as np
 
-from design.claims import Numbers, Statement, claims_of
+from design.claims import Statement, to_show
 from design.region import Region
 from kinematics import (
     Array,
     BlockProgram,
     BoxProgram,
+    ClaimSymbols,
     Mechanism,
     Op,
     Program,
@@ -42,18 +43,18 @@ class LowerBounds:
 
     def __init__(self, statement: Statement, region: Region) -> None:
         """Build the programs."""
-        robot, numbers = statement.robot, Numbers.symbols()
+        robot, claim = statement.robot, ClaimSymbols.fresh()
         model = robot.model()
         self.statement = statement
         intervals = [region.intervals[name] for name in robot.pose_names]
         self.free = np.array([i for i, (low, high) in enumerate(intervals) if low < high], dtype=np.int64)
         self._extent = np.array([high - low if high > low else 1.0 for low, high in intervals])
         middle = region.from_unit(np.full(region.dimension, 0.5), robot.pose_names)
-        claims = claims_of(statement, numbers, middle)
-        fixed = [*robot.geometry.vector(), *Numbers.values(statement)]
+        claims = to_show(statement, claim, middle)
+        fixed = [*robot.geometry.vector(), *statement.numbers]
         moving = ca.vertcat(*(model.pose[int(i)] for i in self.free)) if self.free.size else ca.SX(0, 1)
         gradient = ca.jacobian(claims.expressions, moving)
-        symbols = [model.pose, ca.vec(claims.scaling), model.geometry, numbers.vector]
+        symbols = [model.pose, ca.vec(claims.scaling), model.geometry, claim.vector]
 
         def program(*outputs: ca.SX) -> BoxProgram:
             return BoxProgram.of(
@@ -66,7 +67,7 @@ class LowerBounds:
         self._plain = program(claims.expressions)
         self._slopes = self._count * (1 + self.free.size)  # where the conditions start
         self._chosen, self._size = claims.chosen, claims.scaling.numel()
-        self._matrix = _plain_program(robot, claims.matrix, numbers, fixed) if claims.matrix is not None else None
+        self._matrix = _plain_program(robot, claims.matrix, claim, fixed) if claims.matrix is not None else None
 
     def lowest(self, low: Array, high: Array) -> tuple[Array, Array]:
         """Lower bounds and where to split.
@@ -137,9 +138,9 @@ def _conditions(symbols: list[ca.SX], expressions: ca.SX) -> ca.SX:
     return ca.vertcat(*found) if found else ca.SX(0, 1)
 
 
-def _plain_program(robot: Mechanism, matrix: ca.SX, numbers: Numbers, fixed: list[float]) -> BlockProgram:
+def _plain_program(robot: Mechanism, matrix: ca.SX, claim: ClaimSymbols, fixed: list[float]) -> BlockProgram:
     model = robot.model()
-    symbols = ca.vertcat(model.geometry, numbers.vector)
+    symbols = ca.vertcat(model.geometry, claim.vector)
     matrix = ca.substitute(matrix, symbols, ca.SX(fixed))
     return bulk(ca.Function("matrix", [model.pose], [ca.densify(matrix)]))
 

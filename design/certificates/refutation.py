@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from design.claims import Numbers, Statement, defining_rows
+from design.claims import Statement
 from design.region import Region
-from kinematics import Array, BoxProgram, Program, enclose
+from kinematics import Array, BoxProgram, ClaimSymbols, Program, enclose
 
 _MOST = 1024  # poses that are tried at once, the lowest first
 
@@ -30,13 +30,14 @@ class Refuter:
 
     def __init__(self, statement: Statement) -> None:
         self.statement = statement
-        robot, numbers = statement.robot, Numbers.symbols()
+        robot, claim = statement.robot, ClaimSymbols.fresh()
         model = robot.model()
-        reach, rows = robot.reach(model.pose, model.g), defining_rows(statement, numbers)
+        reach = robot.reach(model.pose, model.g)
+        rows = robot.margins[statement.margin].defining_rows(robot, claim)
         self._limbs = reach.numel()
-        symbols = [model.pose, model.geometry, numbers.vector]
+        symbols = [model.pose, model.geometry, claim.vector]
         program = Program.of(ca.Function("refute", symbols, [ca.densify(ca.vertcat(reach, rows))]))
-        self._rows = BoxProgram.of(program, [*robot.geometry.vector(), *Numbers.values(statement)])
+        self._rows = BoxProgram.of(program, [*robot.geometry.vector(), *statement.numbers])
 
     def refutation(self, region: Region, poses: Array) -> Refutation | None:
         """The worst of the poses (k, n) that lie in the region and are shown to refute; None where none is."""

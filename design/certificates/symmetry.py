@@ -21,12 +21,11 @@ from design.region import Region
 from kinematics import Array, Mechanism, Model
 
 Mirrors = tuple[tuple[str, ...], ...]
-_OF_JACOBIANS = ("J_q", "det_J_q", "det_J_x", "fvi")
 
 
 def mirrors_of(robot: Mechanism, region: Region, margin: str) -> Mirrors:
     """The robot's mirrors that keep the region and are shown to keep the margin; the first name of each is halved."""
-    if margin not in _OF_JACOBIANS:
+    if not robot.margins[margin].of_jacobians:
         return ()
     kept = [names for names in robot.mirrors if _keeps(region, names) and _holds(type(robot), robot.model(), names)]
     halved = [names[0] for names in kept]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinematics import Array, FviBounds, InvalidValue, Mechanism, finite, positive
+from kinematics import Array, ClaimSymbols, FviBounds, InvalidValue, Mechanism, finite, positive
 
 
 @dataclass(frozen=True)
@@ -48,6 +48,11 @@ class Statement:
         """With the robot's own FVI bounds and length where none are given."""
         length = robot.characteristic_length if characteristic_length is None else characteristic_length
         return cls(robot, margin, at_least, bounds or robot.fvi_bounds, length)
+
+    @property
+    def numbers(self) -> list[float]:
+        """What `ClaimSymbols` stand for."""
+        return ClaimSymbols.values(self.at_least, self.bounds, self.length)
 
     def value(self, poses: Array) -> Array:
         """(..., n) -> (...,) the margin in plain arithmetic; NaN where a limb cannot reach, of `reach` itself too."""

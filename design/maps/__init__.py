@@ -2,7 +2,7 @@
 
 from design.maps.certified_cells import certified_cells
 from design.maps.level_sets import LevelSet, boundary, level_set
-from design.maps.map_index import Index, index_names, index_of
+from design.maps.map_index import Index, index_of
 from design.maps.sampled_map import Map, map_of
 from design.maps.section import Section
 
@@ -13,7 +13,6 @@ __all__ = [
     "Section",
     "boundary",
     "certified_cells",
-    "index_names",
     "index_of",
     "level_set",
     "map_of",

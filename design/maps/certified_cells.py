@@ -74,7 +74,7 @@ def _proofs(
     """The proved cells of a chart of `size` by `size`, the boxes bounded, those left of smallest cells, and whether
     all cells were tried.
     """
-    holds, refuter = chart.goodness >= lower.statement.at_least, Refuter(lower.statement)  # NaN does not hold
+    holds, refuter = chart.values >= lower.statement.at_least, Refuter(lower.statement)  # NaN does not hold
     cells, proved, left, boxes = deque([(0, 0, size)]), [], [np.empty((0, 2, chart.poses.shape[-1]))], 0
     while cells and not budget.spent:
         column, row, size = cells.popleft()

@@ -170,7 +170,7 @@ def integrals(chart: Map, bound: float | None) -> Integrals:
     """The figures of one map."""
     triangles = _triangles(chart)
     if bound is not None:
-        triangles = _clipped(triangles, _GOOD, -bound if chart.smaller_is_better else bound)
+        triangles = _clipped(triangles, _GOOD, bound)
     triangles = _clipped(triangles, _INSET, 0.0)
     (ax, ay), (bx, by) = (np.moveaxis(triangles[:, k, :2] - triangles[:, 0, :2], -1, 0) for k in (1, 2))
     areas = 0.5 * np.abs(ax * by - ay * bx)
@@ -182,17 +182,17 @@ def integrals(chart: Map, bound: float | None) -> Integrals:
     values = values - mean
     squares = ((values**2).sum(axis=1) + values.sum(axis=1) ** 2) / 12.0  # of a linear function over a triangle
     deviation = math.sqrt(float((areas * squares).sum() / total))
-    return Integrals(total, -mean if chart.smaller_is_better else mean, deviation)
+    return Integrals(total, mean, deviation)
 
 
 def boundary(chart: Map, bound: float | None) -> list[Array]:
     """Closed polylines (k, 2) around the part of the plane where the index is at least the bound."""
-    good = chart.goodness
+    good = chart.values
     spare = np.where(np.isnan(good), np.nan, 1.0)
     if np.isnan(good).all():
         return []
     if bound is not None:
-        spare = good + bound if chart.smaller_is_better else good - bound
+        spare = good - bound
     if np.isfinite(chart.inset).all():
         scale = np.nanmax(np.abs(spare)) / np.abs(chart.inset).max()
         spare = np.minimum(spare, scale * chart.inset)
@@ -202,10 +202,10 @@ def boundary(chart: Map, bound: float | None) -> list[Array]:
 
 
 def _triangles(chart: Map) -> Array:
-    """(t, 3, 4) vertices (first, second, goodness, inset); those with a vertex out of reach are left out."""
+    """(t, 3, 4) vertices (first, second, value, inset); those with a vertex out of reach are left out."""
     first, second = np.meshgrid(chart.first, chart.second)
     inset = np.where(np.isinf(chart.inset), 1.0, chart.inset)
-    nodes = np.stack([first, second, chart.goodness, inset], axis=-1)
+    nodes = np.stack([first, second, chart.values, inset], axis=-1)
     corners = [nodes[:-1, :-1], nodes[:-1, 1:], nodes[1:, 1:], nodes[1:, :-1]]
     middle = sum(corners) / 4.0
     sides = [np.stack([corners[k], corners[(k + 1) % 4], middle], axis=-2) for k in range(4)]

@@ -1,4 +1,4 @@
-"""The indices that can be mapped: every margin of the mechanism, and v_w, f_w and the condition number beside them."""
+"""What is mapped: a margin of a robot, measured in one way."""
 
 from __future__ import annotations
 
@@ -7,61 +7,50 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinematics import Array, FviBounds, InvalidValue, Mechanism
-
-BESIDE_MARGINS = ("v_w", "f_w", "condition_number")
+from kinematics import Array, FviBounds, Mechanism
 
 
 @dataclass(frozen=True)
 class Index:
-    """A number at each pose.
+    """A number at each pose, the larger the better.
 
     Attributes:
-        name: as in `index_names`.
+        name: of the margin.
+        unit: of its numbers; empty where it has none.
+        words: what it is, for people.
         value: (..., n) poses -> (...,), NaN out of reach.
-        smaller_is_better: only of the condition number; its worst is the largest.
         least: a value that every pose within reach keeps; -inf where NaN alone tells which these are.
     """
 
     name: str
     value: Callable[[Array], Array]
-    smaller_is_better: bool = False
+    unit: str = ""
+    words: str = ""
     least: float = -np.inf
 
-    @property
-    def sign(self) -> float:
-        """Times the value, the larger the better."""
-        return -1.0 if self.smaller_is_better else 1.0
-
     def goodness(self, poses: Array) -> Array:
-        """(...,) the value with its sign, so that the worst is the lowest; -inf out of reach."""
-        values = self.sign * self.value(poses)
+        """(...,) the value; -inf out of reach."""
+        values = self.value(poses)
         return np.where(np.isnan(values), -np.inf, values)
-
-
-def index_names(robot: Mechanism | type[Mechanism]) -> tuple[str, ...]:
-    """What `index_of` knows for a mechanism."""
-    return (*robot.margins, *BESIDE_MARGINS)
 
 
 def index_of(
     robot: Mechanism, name: str, bounds: FviBounds | None = None, characteristic_length: float | None = None
 ) -> Index:
-    """An index by its name.
+    """A margin as an index.
 
     Args:
+        name: one of `robot.margins`.
         bounds, characteristic_length: as in `Mechanism.margin`.
 
     Raises:
-        InvalidValue: the mechanism has no such index.
+        InvalidValue: the mechanism has no such margin.
     """
-    length = characteristic_length
-    if name in robot.margins:
-        least = 0.0 if name == "reach" else -np.inf
-        return Index(name, lambda poses: robot.margin(name, poses, bounds, length), least=least)
-    if name in ("v_w", "f_w"):
-        which = 0 if name == "v_w" else 1
-        return Index(name, lambda poses: robot.isotropic(poses, length)[which])
-    if name == "condition_number":
-        return Index(name, lambda poses: robot.condition_number(poses, length), smaller_is_better=True)
-    raise InvalidValue(f"{type(robot).__name__} index", name, f"one of {', '.join(index_names(robot))}")
+    margin = robot.margin_named(name)
+    return Index(
+        name,
+        lambda poses: robot.margin(name, poses, bounds, characteristic_length),
+        margin.unit,
+        margin.words,
+        0.0 if margin.beyond_reach else -np.inf,
+    )

@@ -35,10 +35,8 @@ class Map:
     Attributes:
         section: the plane.
         index: its name.
-        smaller_is_better: as in `Index`.
         first, second: (a,), (b,) values of the two axes [m or rad].
-        values: (b, a) the worst at each node, NaN where some pose behind it is out of reach (or, for the condition
-            number, singular); also beyond a curved
+        values: (b, a) the worst at each node, NaN where some pose behind it is out of reach; also beyond a curved
             boundary, where it continues the map.
         poses: (b, a, n) where that is.
         inset: (b, a) how far the node is inside a curved boundary of the region, negative beyond it [m]; inf: none.
@@ -46,7 +44,6 @@ class Map:
 
     section: Section
     index: str
-    smaller_is_better: bool
     first: Array
     second: Array
     values: Array
@@ -54,17 +51,11 @@ class Map:
     inset: Array
 
     @property
-    def goodness(self) -> Array:
-        """(b, a) the values, turned so that larger is better."""
-        return -self.values if self.smaller_is_better else self.values
-
-    @property
     def lowest(self) -> tuple[float, Array]:
-        """Worst value of the nodes in the region and its pose (n,); -inf or inf where one is out of reach."""
-        good = np.where(np.isnan(self.values), -np.inf, self.goodness)
+        """Worst value of the nodes in the region and its pose (n,); -inf where one is out of reach."""
+        good = np.where(np.isnan(self.values), -np.inf, self.values)
         row, column = np.unravel_index(int(np.where(self.inset >= 0.0, good, np.inf).argmin()), good.shape)
-        value = good[row, column]
-        return float(-value if self.smaller_is_better else value), self.poses[row, column]
+        return float(good[row, column]), self.poses[row, column]
 
 
 def map_of(
@@ -98,9 +89,9 @@ def map_of(
     )
     points = np.stack(np.meshgrid(first, second), axis=-1)
     good, poses = worst_behind(index, section, names, points.reshape(-1, 2), Budget(seconds))
-    values = np.where(np.isinf(good) & (good < 0), np.nan, index.sign * good).reshape(points.shape[:2])
+    values = np.where(np.isinf(good) & (good < 0), np.nan, good).reshape(points.shape[:2])
     poses = poses.reshape(*points.shape[:2], len(names))
-    return Map(section, index.name, index.smaller_is_better, first, second, values, poses, section.inset(points))
+    return Map(section, index.name, first, second, values, poses, section.inset(points))
 
 
 def window_of(section: Section) -> Window:

@@ -24,13 +24,12 @@ def window_of_part(
 
     None where there is no such part, or none that is narrower than the chart.
     """
-    least = -bound if chart.smaller_is_better else bound
-    window = _around_seen(section, chart, least)
+    window = _around_seen(section, chart, bound)
     if window is None:
         top = _climbed(index, section, names, chart)
-        if top is None or not _good(index, section, names, top[None])[0] >= least:
+        if top is None or not _good(index, section, names, top[None])[0] >= bound:
             return None
-        window = _around_point(index, section, names, chart, top, least, budget)
+        window = _around_point(index, section, names, chart, top, bound, budget)
     narrower = window is not None and _area(window) < 0.5 * (chart.first[-1] - chart.first[0]) * (
         chart.second[-1] - chart.second[0]
     )
@@ -47,7 +46,7 @@ def _around_point(
         if budget.spent or _area(window) == 0.0:
             return None
         look = map_of(index, section, names, (_NODES, _NODES), window=window)
-        rows, columns = np.nonzero((look.goodness >= least) & (look.inset >= 0.0))
+        rows, columns = np.nonzero((look.values >= least) & (look.inset >= 0.0))
         if len(rows) and min(np.ptp(columns), np.ptp(rows)) >= _WIDE:
             return window
         seen = _around_seen(section, look, least)
@@ -58,7 +57,7 @@ def _around_point(
 
 def _around_seen(section: Section, chart: Map, least: float) -> Window | None:
     """Of the nodes that keep the bound, with a step and a half around them; None where none does."""
-    rows, columns = np.nonzero((chart.goodness >= least) & (chart.inset >= 0.0))
+    rows, columns = np.nonzero((chart.values >= least) & (chart.inset >= 0.0))
     if not len(rows):
         return None
     spare = 1.5 * np.array([chart.first[1] - chart.first[0], chart.second[1] - chart.second[0]])
@@ -82,7 +81,7 @@ def _area(window: Window) -> float:
 
 def _climbed(index: Index, section: Section, names: tuple[str, ...], chart: Map) -> Array | None:
     """(2,) the best point that climbing from the best nodes inside the region finds; None where none has a value."""
-    good = np.where(np.isfinite(chart.goodness) & (chart.inset >= 0.0), chart.goodness, -np.inf)
+    good = np.where(np.isfinite(chart.values) & (chart.inset >= 0.0), chart.values, -np.inf)
     best = np.argsort(-good, axis=None, kind="stable")[:_CLIMBS]
     best = best[np.isfinite(good.ravel()[best])]
     if not len(best):

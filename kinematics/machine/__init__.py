@@ -13,7 +13,7 @@ from kinematics.machine.geometry import (
     ratio,
     screw_pitch,
 )
-from kinematics.machine.joint_ranges import JointRanges, Pair, PassiveJoint, RodRanges, joint_travel
+from kinematics.machine.joint_ranges import JointRanges, Pair, PassiveJoint, RodRanges
 
 __all__ = [
     "REST",
@@ -33,7 +33,6 @@ __all__ = [
     "Rotor",
     "angle",
     "frame",
-    "joint_travel",
     "length",
     "numbers_of",
     "ratio",

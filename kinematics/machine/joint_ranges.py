@@ -111,10 +111,3 @@ class PassiveJoint(NamedTuple):
             reach = ca.sin(allowed) * self.length
             return [reach - along, reach + along, allowed]
         return [along - ca.cos(allowed) * self.length, allowed]
-
-
-def joint_travel(joints: ca.SX, limits: Array) -> ca.SX:
-    """Room of each joint to its lowest and highest value, in its own unit; infinite where nothing limits any."""
-    rooms = [joints[i] - low for i, (low, _) in enumerate(limits) if np.isfinite(low)]
-    rooms += [high - joints[i] for i, (_, high) in enumerate(limits) if np.isfinite(high)]
-    return ca.vertcat(*rooms) if rooms else ca.SX(math.inf)

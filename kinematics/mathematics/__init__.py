@@ -3,10 +3,12 @@
 from kinematics.mathematics.distinct_solutions import distinct, gaps, working_first
 from kinematics.mathematics.double_roots import not_below_zero
 from kinematics.mathematics.homotopy import refine, track
+from kinematics.mathematics.jacobi_rotations import singular_values
 from kinematics.mathematics.orientation import angles, rotation, turn
 from kinematics.mathematics.polynomial_product import product
 from kinematics.mathematics.polynomial_roots import real_roots
 from kinematics.mathematics.rigid_displacements import displacement, leg_quadrics, study_quadric
+from kinematics.mathematics.scaling import near_inverse
 from kinematics.mathematics.segment_distance import segment_distances, segment_gap_symbolic
 from kinematics.mathematics.symbolic_linear_algebra import Minors, adjugate, determinant, volume
 
@@ -19,6 +21,7 @@ __all__ = [
     "distinct",
     "gaps",
     "leg_quadrics",
+    "near_inverse",
     "not_below_zero",
     "product",
     "real_roots",
@@ -26,6 +29,7 @@ __all__ = [
     "rotation",
     "segment_distances",
     "segment_gap_symbolic",
+    "singular_values",
     "study_quadric",
     "track",
     "turn",

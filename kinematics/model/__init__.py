@@ -2,8 +2,17 @@
 
 from kinematics.model.aspect import in_aspect, joined_to_home
 from kinematics.model.continuation import continued, polished
-from kinematics.model.indices import FviBounds, homogeneous, sides
+from kinematics.model.indices import (
+    FviBounds,
+    fvi,
+    fvi_components,
+    homogeneous,
+    isotropic,
+    isotropic_components,
+    sides,
+)
 from kinematics.model.joint_redundancy import BestFit, EncoderCheck, check_encoders, least_squares
+from kinematics.model.margin import ClaimSymbols, Margin, Measure, ToShow, by_name, signed
 from kinematics.model.mechanism import Mechanism
 from kinematics.model.programs import Build, Write
 from kinematics.model.symbolic_model import Model
@@ -12,18 +21,28 @@ from kinematics.model.working_mode import Mode
 __all__ = [
     "BestFit",
     "Build",
+    "ClaimSymbols",
     "EncoderCheck",
     "FviBounds",
+    "Margin",
+    "Measure",
     "Mechanism",
     "Mode",
     "Model",
+    "ToShow",
     "Write",
+    "by_name",
     "check_encoders",
     "continued",
+    "fvi",
+    "fvi_components",
     "homogeneous",
     "in_aspect",
+    "isotropic",
+    "isotropic_components",
     "joined_to_home",
     "least_squares",
     "polished",
     "sides",
+    "signed",
 ]

@@ -6,6 +6,7 @@ A new mechanism is one file with these hooks, and its name in `MECHANISMS`; docs
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -14,6 +15,7 @@ import casadi as ca
 from kinematics.arrays import Array
 from kinematics.machine import Bodies, GeometryRecord, InertiaRecord, JointRanges, PassiveJoint
 from kinematics.model.indices import FviBounds
+from kinematics.model.margin import Margin
 
 if TYPE_CHECKING:
     from kinematics.model.working_mode import Mode
@@ -32,7 +34,7 @@ class Definition(ABC):
     counts_turns: ClassVar[bool] = False  # whether an angle a turn on is another pose, as on a screw
     fvi_bounds: ClassVar[FviBounds]
     mirrors: ClassVar[tuple[tuple[str, ...], ...]] = ()  # coordinates whose signs change together: a mirror image
-    margins: ClassVar[tuple[str, ...]] = ("reach", "joint_travel", "fvi", "J_q", "det_J_q", "det_J_x")
+    margins: ClassVar[Mapping[str, Margin]]  # by name: `by_name(*STANDARD, ...)`, and what the mechanism adds
 
     @staticmethod
     @abstractmethod
@@ -82,11 +84,11 @@ class Definition(ABC):
         """Named polylines (3, k) that draw the mechanism: base, arms, rods, platform."""
 
     def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:  # noqa: ARG002
-        """The joints at the rods' ends; where there are any, `Ranges` limits them and "passive_joint" is a margin."""
+        """The joints at the rods' ends; where there are any, `Ranges` limits them and `PASSIVE_JOINT` is a margin."""
         return []
 
     def segment_pairs(self) -> list[tuple[ca.SX, ca.SX]]:
-        """Members (3, 2) at a pose that must not meet, ends in columns; with any, "clearance" [m] is a margin."""
+        """Members (3, 2) at a pose that must not meet, ends in columns; with any, `CLEARANCE` [m] is a margin."""
         return []
 
     @classmethod

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 
 from kinematics.model import indices
+from kinematics.model.margin import Measure
 from kinematics.model.programs import Build
 from kinematics.model.symbolic_model import Model
 
@@ -61,18 +62,17 @@ def isotropic(robot: Mechanism, _: Model, length: float) -> list[ca.SX]:
     return list(indices.isotropic(robot.homogeneous_jacobian(length)))
 
 
-def force_capability(robot: Mechanism, _: Model, length: float) -> list[ca.SX]:
-    return [indices.smallest(indices.force_capability_components(robot.homogeneous_jacobian(length)))]
-
-
 def homogeneous(robot: Mechanism, _: Model, length: float) -> list[ca.SX]:
     return [robot.homogeneous_jacobian(length)]
 
 
-def margin(robot: Mechanism, _: Model, name: str, bounds: indices.FviBounds, length: float) -> list[ca.SX]:
-    if name == "fvi":
-        return [indices.fvi(robot.homogeneous_jacobian(length), bounds)]
-    return [indices.smallest(robot.margin_components(name, bounds, length))]
+def margin(robot: Mechanism, _: Model, name: str, measure: Measure) -> list[ca.SX]:
+    return [robot.margins[name].smallest(robot, measure)]
+
+
+def margin_everywhere(robot: Mechanism, model: Model, name: str) -> Build:
+    measure = Measure(robot.fvi_bounds, robot.characteristic_length)
+    return [model.pose], [robot.margins[name].smallest(robot, measure)]
 
 
 def skeleton(robot: Mechanism, model: Model) -> list[ca.SX]:

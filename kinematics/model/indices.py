@@ -10,13 +10,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import reduce
-from itertools import combinations
 
 import casadi as ca
 
 from kinematics.arguments import positive
 from kinematics.errors import InvalidValue
-from kinematics.mathematics import Minors, adjugate
+from kinematics.mathematics import adjugate
 
 _LEAST, _MOST = 1e-50, 1e50  # of a bound of the FVI: squares of products of two must stay numbers
 
@@ -87,31 +86,6 @@ def isotropic(j_mw: ca.SX) -> tuple[ca.SX, ca.SX]:
     """v_w and f_w, the minima of `isotropic_components`, with one root and one division each."""
     rows, columns, det = _squares(j_mw)
     return 1 / ca.sqrt(reduce(ca.fmax, rows)), ca.fabs(det) / ca.sqrt(reduce(ca.fmax, columns))
-
-
-def force_capability_components(j_mw: ca.SX) -> ca.SX:
-    """Distances from the origin to the facets of the zonotope of forces J_mw^T tau, |tau_i| <= 1.
-
-    A facet is parallel to n - 1 of the rows j_i of J_mw: its normal u is their generalised cross product, its distance
-    sum_i |j_i . u| / |u|. The smallest is the radius of the largest ball of forces that some joint efforts within
-    their limits give. Rows that depend on each other span no facet and give infinity.
-
-    Args:
-        j_mw: (m, n) homogeneous inverse Jacobian, m >= n.
-
-    Returns:
-        (k,) with k the number of ways to choose n - 1 of m rows.
-    """
-    m, n = j_mw.shape
-    minors, distances = Minors(j_mw), []
-    for rows in combinations(range(m), n - 1):
-        columns = [tuple(c for c in range(n) if c != k) for k in range(n)]
-        normal = ca.vertcat(*((-1) ** k * minors.minor(rows, columns[k]) for k in range(n)))
-        size = ca.norm_2(normal)
-        others = [i for i in range(m) if i not in rows]
-        distance = ca.sum1(ca.fabs(j_mw[others, :] @ normal)) / size
-        distances.append(ca.if_else(size <= 0, ca.inf, distance))
-    return ca.vertcat(*distances)
 
 
 def fvi_components(j_mw: ca.SX, bounds: FviBounds) -> ca.SX:

@@ -14,12 +14,12 @@ import numpy as np
 from kinematics.arrays import Array, checked, together
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.evaluation import BlockProgram, evaluate
-from kinematics.machine import GeometryRecord, InertiaRecord, Pair, PassiveJoint, joint_travel
-from kinematics.mathematics import segment_gap_symbolic, volume
+from kinematics.machine import GeometryRecord, InertiaRecord
 from kinematics.model import expressions
 from kinematics.model.continuation import continued
 from kinematics.model.definition import Definition
-from kinematics.model.indices import FviBounds, fvi_components, homogeneous
+from kinematics.model.indices import FviBounds, homogeneous
+from kinematics.model.margin import Margin, Measure
 from kinematics.model.programs import Write, program_of
 from kinematics.model.symbolic_model import Model, model_of
 from kinematics.model.working_mode import Mode, mode_at
@@ -188,7 +188,7 @@ class Mechanism(Definition):
 
         With m = n it is f_w; with m > n it is larger, as f_w admits minimum-norm efforts only.
         """
-        return self._evaluate(expressions.force_capability, pose, self._length(characteristic_length))[0][..., 0]
+        return self.margin("force_capability", pose, characteristic_length=characteristic_length)
 
     def fvi(self, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None) -> Array:
         """(...,) min(v_w / v_wl, f_w / f_wl); Shayya et al. (39). NaN where the pose is out of reach."""
@@ -213,21 +213,34 @@ class Mechanism(Definition):
     ) -> Array:
         """(...,) a named margin, the larger the better: the smallest of its components at each pose.
 
-        reach [m]; joint_travel, the room to the nearest joint limit in that joint's unit, and passive_joint [rad], that
-        at the rods' ends; fvi; J_q (the worst |J_q,i| over its scale), det_J_q, det_J_x (normalised, in [0, 1]), and
-        what the mechanism adds. NaN where the pose is out of reach (but for reach itself).
+        Every mechanism has `kinematics.margins.STANDARD`; `margins` holds these, and what the mechanism adds. NaN where
+        the pose is out of reach (but for reach itself).
+
+        Raises:
+            InvalidValue: the mechanism has no such margin.
         """
-        if name == "reach":
-            return np.asarray(self._reach(pose).min(axis=-1))
-        program = self.margin_program(name, bounds, characteristic_length)
+        if self.margin_named(name).beyond_reach:
+            program = self.program(expressions.margin_everywhere, name)
+        else:
+            program = self.margin_program(name, bounds, characteristic_length)
         return evaluate(program, self._poses(pose), blank=True)[0][..., 0]
+
+    def margin_named(self, name: str) -> Margin:
+        """One of `margins`.
+
+        Raises:
+            InvalidValue: the mechanism has no such margin.
+        """
+        if name not in self.margins:
+            raise InvalidValue(f"{type(self).__name__} margin", name, f"one of {', '.join(self.margins)}")
+        return self.margins[name]
 
     def margin_program(
         self, name: str, bounds: FviBounds | None = None, characteristic_length: float | None = None
     ) -> BlockProgram:
-        """What computes a margin other than reach: at a pose, the margin and a number that is NaN out of reach."""
-        length = self._length(characteristic_length)
-        return self.program(expressions.within_reach, expressions.margin, name, bounds or self.fvi_bounds, length)
+        """What computes a margin: at a pose, the margin and a number that is NaN out of reach."""
+        measure = Measure(bounds or self.fvi_bounds, self._length(characteristic_length))
+        return self.program(expressions.within_reach, expressions.margin, name, measure)
 
     def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
         """A margin's components in the model's symbols `pose` and `geometry`, each to be at least the bound.
@@ -235,35 +248,7 @@ class Mechanism(Definition):
         Raises:
             InvalidValue: the mechanism has no such margin.
         """
-        if name not in self.margins:
-            raise InvalidValue(f"{type(self).__name__} margin", name, f"one of {', '.join(self.margins)}")
-        model = self.model()
-        if name == "reach":
-            return self.reach(model.pose, model.g)
-        if name == "joint_travel":
-            return joint_travel(model.inverse, self.ranges.limits(len(self.joint_names)))
-        if name == "passive_joint":
-            return self.passive_rows(lambda joint, limits: joint.room(limits))
-        if name == "clearance":
-            return ca.vertcat(*(ca.norm_2(segment_gap_symbolic(one, two)) for one, two in self.segment_pairs()))
-        if name == "fvi":
-            return fvi_components(self.homogeneous_jacobian(characteristic_length), bounds)
-        q_scale, x_scale = self.scales(model.g)
-        if name == "det_J_x":
-            return volume(model.j_x_at_pose) / x_scale
-        normalised = ca.fabs(model.j_q_at_pose) / q_scale
-        if name == "J_q":
-            return normalised
-        result = ca.SX(1)
-        for i in range(normalised.shape[0]):
-            result *= normalised[i]
-        return result
-
-    def passive_rows(self, rows: Callable[[PassiveJoint, Pair], list[ca.SX]]) -> ca.SX:
-        """Expressions of every passive joint and the limits, in the symbols `pose` and `geometry`."""
-        model, limits = self.model(), self.ranges.passive
-        joints = self.passive_joints(model.pose, model.joints, model.g)
-        return model.at_pose(ca.vertcat(*(row for joint in joints for row in rows(joint, limits))))
+        return self.margin_named(name).components(self, Measure(bounds, characteristic_length))
 
     def polylines(self, pose: Array) -> dict[str, Array]:
         """Named polylines (k, 3) of the mechanism at one pose (n,), for drawing."""
@@ -276,8 +261,8 @@ class Mechanism(Definition):
         `serial` (J_q; the paper's under-mobility), `parallel` (J_x; over-mobility) and, where single rods hold the
         platform's orientation, `internal` (J_int); each where the normalised margin is at most the tolerance.
         """
-        kinds = {"serial": "det_J_q", "parallel": "det_J_x", "internal": "internal_determinant"}
-        return {k: self.margin(name, pose) <= tolerance for k, name in kinds.items() if name in self.margins}
+        kinds = {m.singularity: name for name, m in self.margins.items() if m.singularity}
+        return {kind: self.margin(name, pose) <= tolerance for kind, name in kinds.items()}
 
     def require_reachable(self, pose: Array) -> None:
         """Check every pose.

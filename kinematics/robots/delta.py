@@ -13,8 +13,9 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import Bodies, GeometryRecord, Particle, angle, length
+from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import not_below_zero
-from kinematics.model import Build, FviBounds, Model
+from kinematics.model import Build, FviBounds, Model, by_name
 from kinematics.robots.shared import (
     ArmInertia,
     ArmRanges,
@@ -75,7 +76,7 @@ class Delta(RotaryLimbs):
     joint_units = ("rad",) * 3
     rotations = ()
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
-    margins = (*RotaryLimbs.margins, "passive_joint")
+    margins = by_name(*STANDARD, PASSIVE_JOINT)
 
     @property
     def characteristic_length(self) -> float:

@@ -40,7 +40,7 @@ def study_table(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> Table:
     """The keys of a study of `mechanism`; the region's follow from its kind in `raw`."""
     fields = geometry_fields(mechanism)
     lengths = Key("a list out of", choices=_lengths(fields))
-    margins = Key("one of", choices=mechanism.margins)
+    margins = Key("one of", choices=tuple(mechanism.margins))
     optimise = {
         "variables": Table({name: _bounds(field) for name, field in fields.items()}),
         "sums": table_of(SumTable, rows=True).updated({"fields": lengths}),
@@ -52,7 +52,9 @@ def study_table(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> Table:
             "home": _home_table(mechanism),
             "region": _region_table(mechanism, raw.get("region")),
             "optimise": table_of(OptimiseTable).updated(optimise),
-            "certify": table_of(CertifyTable).updated({"margins": Key("a list out of", choices=mechanism.margins)}),
+            "certify": table_of(CertifyTable).updated(
+                {"margins": Key("a list out of", choices=tuple(mechanism.margins))}
+            ),
             "requirement": table_of(RequirementTable, rows=True).updated({"margin": margins}),
             "trajectory": _trajectory_table(mechanism.pose_names, len(mechanism.joint_names)),
         }

@@ -12,7 +12,7 @@ from studies.cli.options import ForceOption, JsonOption, OutOption, PrototypeOpt
 
 MarginOption = Annotated[
     str | None,
-    typer.Option("--margin", help="Any margin of the mechanism, v_w, f_w or condition_number; fvi if not given."),
+    typer.Option("--margin", help="Any margin of the mechanism; fvi if not given."),
 ]
 SectionOption = Annotated[
     str | None,
@@ -40,8 +40,7 @@ AtLeastOption = Annotated[
     typer.Option(
         "--at-least",
         metavar="C",
-        help="Bound of the area and the boundary; for condition_number it is an upper one. "
-        "If not given: the study's requirement; 1 for fvi; else all in reach.",
+        help="Bound of the area and the boundary. If not given: the study's requirement; 1 for fvi; else all in reach.",
     ),
 ]
 CertifiedOption = Annotated[

@@ -55,7 +55,7 @@ def bound_label(outcome: MapOutcome) -> str:
     request = outcome.request
     if request.bound is None:
         return "region in reach"
-    return f"{request.index.name} {'<=' if request.index.smaller_is_better else '>='} {request.bound:g}, sampled"
+    return f"{request.index.name} >= {request.bound:g}, sampled"
 
 
 def draw_contours(figure: Figure, axes: Axes, chart: Map, name: str, scale: Array, bound: float | None) -> None:
@@ -82,8 +82,7 @@ def _levels(chart: Map, bound: float | None) -> Array:
         return np.array([0.0, 1.0])
     low, high = float(values.min()), float(values.max())
     if bound is not None and low < bound < high:
-        reach = bound - low if chart.smaller_is_better else high - bound
-        low, high = max(low, bound - reach), min(high, bound + reach)
+        low = max(low, 2 * bound - high)
     return np.asarray(MaxNLocator(_LEVELS).tick_values(low, max(high, low + 1e-9 * max(1.0, abs(low)))))
 
 

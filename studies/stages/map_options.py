@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from design import Box, Cylinder, Index, InvalidRegion, InvalidSection, Region, Section, index_names, index_of
+from design import Box, Cylinder, Index, InvalidRegion, InvalidSection, Region, Section, index_of
 from kinematics import FviBounds, LinkwrightError, Mechanism
 from studies.building import problem_of, region_of
 from studies.study_file import LARGEST, Study
@@ -59,7 +59,7 @@ def map_request(
     """Put the options to the study's robot and region.
 
     Args:
-        margin: an index of `index_names`; the FVI by default.
+        margin: one of the robot's margins; the FVI by default.
         section: two coordinates, "y,z"; the region's first two free ones by default.
         at: each "name=value" or "name=value,value,...", a name perhaps with `_deg` or `_mm`.
         over: each "name=low:high", which takes the place of the region's own interval; "radius=0.7" for a cylinder.
@@ -69,8 +69,8 @@ def map_request(
         InvalidOption: names the option, what was found and what would be right.
     """
     name = margin or DEFAULT
-    if name not in index_names(robot):
-        raise InvalidOption("--margin", name, f"one of {', '.join(index_names(robot))}")
+    if name not in robot.margins:
+        raise InvalidOption("--margin", name, f"one of {', '.join(robot.margins)}")
     if at_least is not None and not math.isfinite(at_least):
         raise InvalidOption("--at-least", at_least, "a finite number")
     region = _region(study, robot, over)

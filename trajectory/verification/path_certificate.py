@@ -1,4 +1,4 @@
-"""Proof that a robot reaches every pose of a path and is singular at none, over intervals of the arc length.
+"""Proof that a robot keeps its margins at every pose of a path (`Margin.holds_on_paths`), over intervals of arc length.
 
 On an interval of s the path gives bounds of the pose and of its derivative. An interval kernel, rounded outward, bounds
 each margin over that box, and its gradient, which with the path's derivative bounds the slope f' along the path: so
@@ -6,8 +6,7 @@ f(s) >= f(m) - max |f'| r, m the middle and r half of the interval (the centred 
 is better. Intervals are halved until their bound is close to the lowest value seen.
 
 What it rests on: the kernel's assumptions (`kinematics/evaluation/interval_interpreter.py`), and that a path evaluated
-in double arithmetic is
-right to 1e-12, by which its bounds are widened.
+in double arithmetic is right to 1e-12, by which its bounds are widened.
 """
 
 from __future__ import annotations
@@ -18,18 +17,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from kinematics import (
-    Array,
-    BoxProgram,
-    Mechanism,
-    Program,
-    RodLevel,
-    determinant,
-    enclose,
-    rounded_down,
-    sides,
-    volume,
-)
+from kinematics import Array, BoxProgram, Measure, Mechanism, Program, enclose, rounded_down, sides
 from trajectory.errors import PathRefused
 from trajectory.motions import InTime
 from trajectory.paths import Path, PathBox, require_poses_of
@@ -39,7 +27,6 @@ _START = 64  # intervals, at least, that the path is cut into first
 _SHARE = 0.9  # of the lowest value seen, that a bound must reach
 _SMALLEST = 1e-9  # of the length: narrower intervals are not halved
 _MOST = 200_000  # intervals
-_MODULI = ("J_q", "det_J_x", "internal_determinant")
 _UP = 1.0 + 2.0**-48  # covers the roundings of products and of their sum over fewer than ten coordinates
 
 
@@ -48,9 +35,7 @@ class PathCertificate:
     """What holds at every pose of a path.
 
     Attributes:
-        margins: proved lower bounds, all above 0, of reach [m], of the room to the joints' limits
-            [rad or m], of the normalised |J_q| and |det J_x| and, where single rods hold the platform's orientation, of
-            the internal determinant.
+        margins: proved lower bounds, all above 0, of the margins that a path must keep, by name.
         intervals: how many intervals of s the proof took.
     """
 
@@ -63,7 +48,7 @@ class PathCertificate:
 
 
 def certify_path(robot: Mechanism, path: Way) -> PathCertificate:
-    """Prove that every pose of a path is within reach and away from the singularities.
+    """Prove that every pose of a path is within reach and the joints' ranges, and away from the singularities.
 
     Args:
         robot: any mechanism with the path's kind of pose.
@@ -116,14 +101,12 @@ class _Claims:
         (start,) = path.evaluate(np.array(0.0), 0)
         parts = _margins(robot)
         symbols = [model.pose, model.geometry]
-        at_start = ca.Function("start", symbols, [ca.vertcat(*(expression for *_, expression in parts))])
-        values = np.array(at_start(start, fixed))[:, 0]
+        inner = [part.dep(0) if part.op() == ca.OP_FABS else part for *_, part in parts]
+        values = np.array(ca.Function("start", symbols, [ca.vertcat(*inner)])(start, fixed))[:, 0]
         kept = np.flatnonzero(values != np.inf)  # a limit at infinity cannot be met
         self.names = [parts[k][0] for k in kept]
         self.limbs = [parts[k][1] for k in kept]
-        claims = ca.vertcat(
-            *(-parts[k][2] if parts[k][0] in _MODULI and values[k] < 0.0 else parts[k][2] for k in kept)
-        )
+        claims = ca.vertcat(*(_without_modulus(parts[k][2], values[k]) for k in kept))
         gradient = ca.jacobian(claims, model.pose)
 
         def program(*outputs: ca.SX) -> BoxProgram:
@@ -170,21 +153,22 @@ def _steepest(least: Array, most: Array, box: PathBox, count: int) -> Array:
     return np.nan_to_num(slope, nan=np.inf, posinf=np.inf)
 
 
+def _without_modulus(part: ca.SX, at_start: float) -> ca.SX:
+    if part.op() != ca.OP_FABS:
+        return part
+    return -part.dep(0) if at_start < 0.0 else part.dep(0)
+
+
 def _margins(robot: Mechanism) -> list[tuple[str, int | None, ca.SX]]:
-    """Name, limb and expression of each margin; a reach that is the lower of two counts twice."""
-    model = robot.model()
-    q_scale, x_scale = robot.scales(model.g)
-    reach = robot.reach(model.pose, model.g)
-    m, n = model.j_x_at_pose.shape
+    """Name, limb and expression of each margin that a path must keep; a component that is the lower of two counts
+    twice."""
+    measure = Measure(robot.fvi_bounds, robot.characteristic_length)
     found: list[tuple[str, int | None, ca.SX]] = []
-    for i in range(reach.numel()):
-        found += [("reach", i + 1, side) for side in sides(reach[i])]
-    limits = robot.ranges.limits(m)
-    found += [("joint_travel", i + 1, model.inverse[i] - limits[i, 0]) for i in range(m)]
-    found += [("joint_travel", i + 1, limits[i, 1] - model.inverse[i]) for i in range(m)]
-    found += [("J_q", i + 1, model.j_q_at_pose[i] / q_scale[i]) for i in range(m)]
-    spanned = determinant(model.j_x_at_pose) if m == n else volume(model.j_x_at_pose)
-    found.append(("det_J_x", None, spanned / x_scale))
-    if isinstance(robot, RodLevel):
-        found.append(("internal_determinant", None, robot.internal_determinant_symbolic()))
+    for name, margin in robot.margins.items():
+        if margin.holds_on_paths:
+            components = margin.components(robot, measure)
+            count = components.numel()
+            limbs: Sequence[int | None] = margin.limbs(robot) or [None] * count
+            for limb, component in zip(limbs, ca.vertsplit(components), strict=True):
+                found += [(name, limb, side) for side in sides(component)]
     return found

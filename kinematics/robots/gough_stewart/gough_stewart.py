@@ -16,7 +16,8 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.errors import InvalidShape
 from kinematics.machine import TURN, Bodies, Particle, PassiveJoint, Rotor
-from kinematics.model import FviBounds, Mechanism, Mode, Model
+from kinematics.margins import PASSIVE_JOINT, STANDARD
+from kinematics.model import FviBounds, Mechanism, Mode, Model, by_name
 from kinematics.robots.gough_stewart.forward import ForwardSolution, assembly_modes, matched_pose
 from kinematics.robots.gough_stewart.geometry import GoughStewartGeometry, GoughStewartInertia, GoughStewartRanges
 from kinematics.robots.gough_stewart.six_legs import SixLegs
@@ -37,7 +38,7 @@ class GoughStewart(SixLegs):
     inertia: GoughStewartInertia
     joint_units = ("m",) * 6
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=2000.0, speed=0.3, force=500.0)
-    margins = (*SixLegs.margins, "passive_joint")
+    margins = by_name(*STANDARD, PASSIVE_JOINT)
 
     @staticmethod
     def default_home(geometry: GoughStewartGeometry) -> tuple[float, ...]:

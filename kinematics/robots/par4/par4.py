@@ -18,9 +18,11 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import TURN, Bodies, Particle, Rotor, angle, length, ratio
+from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import determinant, distinct, working_first
-from kinematics.model import Build, FviBounds, Mechanism, Model, joined_to_home, polished
+from kinematics.model import Build, FviBounds, Model, by_name, joined_to_home, polished
 from kinematics.robots.par4.forward import Halves, candidates
+from kinematics.robots.par4.pi_joint import PI_JOINT
 from kinematics.robots.shared import (
     ArmInertia,
     ArmRanges,
@@ -89,7 +91,7 @@ class Par4(RotaryLimbs):
     rotations = (3,)
     counts_turns = True  # of the bars, by the gear
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
-    margins = (*Mechanism.margins, "pi_joint", "passive_joint")
+    margins = by_name(*STANDARD, PI_JOINT, PASSIVE_JOINT)
 
     @property
     def characteristic_length(self) -> float:
@@ -126,13 +128,6 @@ class Par4(RotaryLimbs):
         det J_x is +- b / k ((l1 x l2) x (l3 x l4)) . e, l_i the rods and e the horizontal normal of the bars.
         """
         return ca.repmat(g.arm_length * g.rod_length, 4, 1), g.bar_length / g.amplification * g.rod_length**4
-
-    def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
-        """Adds cos psi: 0 where the parallelogram, a rectangle at theta = 0, lies flat and may fold the other way."""
-        if name == "pi_joint":
-            model = self.model()
-            return ca.cos(model.pose[3] / model.g.amplification)
-        return super().margin_components(name, bounds, characteristic_length)
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, rods, halves, bars, tool, payload."""

@@ -34,8 +34,9 @@ from kinematics.machine import (
     length,
     screw_pitch,
 )
-from kinematics.model import Build, FviBounds, Mechanism, Mode, Model
-from kinematics.robots.peppermill import limbs as limbs
+from kinematics.margins import PASSIVE_JOINT, STANDARD
+from kinematics.model import Build, FviBounds, Mechanism, Mode, Model, by_name
+from kinematics.robots.peppermill import limbs
 
 _E_Z = ca.DM([0, 0, 1])
 # Of the larger pitch. A rounding of a nut's height [m] turns theta by 2 pi / |p_1 - p_2| times as much [rad]: at this
@@ -124,7 +125,7 @@ class Peppermill(Mechanism):
     counts_turns = True
     # 750 W servos at 3000 rpm and three times their rated torque, asked for 2.5 m/s and 50 N: our assumption.
     fvi_bounds = FviBounds(joint_speed=314.0, joint_effort=7.2, speed=2.5, force=50.0)
-    margins = (*Mechanism.margins, "passive_joint")
+    margins = by_name(*STANDARD, PASSIVE_JOINT)
 
     @property
     def characteristic_length(self) -> float:

@@ -15,7 +15,7 @@ from kinematics.arrays import Array
 from kinematics.errors import InvalidValue
 from kinematics.evaluation import evaluate
 from kinematics.model import Build, Model
-from kinematics.robots.peppermill import limbs as limbs
+from kinematics.robots.peppermill import limbs
 from kinematics.robots.peppermill.peppermill import Peppermill
 
 _CLOSED = 1e-9  # of a link's length: joints further than this from the closure do not belong to the pose

@@ -16,8 +16,9 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import TURN, Bodies, GeometryRecord, InertiaRecord, Particle, Points, length
+from kinematics.margins import STANDARD
 from kinematics.mathematics import distinct
-from kinematics.model import Build, Mechanism, Model, joined_to_home
+from kinematics.model import Build, Mechanism, Model, by_name, joined_to_home
 from kinematics.robots.planar.forward import placements, rods_and_determinant
 from kinematics.robots.shared import ALIKE, twins
 
@@ -89,6 +90,7 @@ class Planar(Mechanism):
     pose_names = ("x", "y", "theta")
     joint_names = ("q1", "q2", "q3")
     rotations = (2,)
+    margins = by_name(*STANDARD)
 
     @property
     def characteristic_length(self) -> float:

@@ -20,12 +20,23 @@ from scipy.linalg import block_diag
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import Bodies, Particle, PassiveJoint, Rod, Rotor
-from kinematics.model import BestFit, EncoderCheck, FviBounds, Mode, Model, check_encoders, least_squares, polished
+from kinematics.margins import CLEARANCE, PASSIVE_JOINT, STANDARD
+from kinematics.model import (
+    BestFit,
+    EncoderCheck,
+    FviBounds,
+    Mode,
+    Model,
+    by_name,
+    check_encoders,
+    least_squares,
+    polished,
+)
 from kinematics.robots.redundant_3t1r.clearance import arm_distances, arms_apart
 from kinematics.robots.redundant_3t1r.forward import candidates
 from kinematics.robots.redundant_3t1r.geometry import Redundant3T1RGeometry, Redundant3T1RInertia, Redundant3T1RRanges
 from kinematics.robots.redundant_3t1r.singularities import ParallelSingularity, parallel_conditions
-from kinematics.robots.shared import RodLevel, outline
+from kinematics.robots.shared import INTERNAL_DETERMINANT, RodLevel, outline
 
 _LIMBS = 6
 _AHEAD = ca.DM([-0.5, -0.5, 0.5, 0.5, -0.5, -0.5])  # B_i along the platform's x, in units of d
@@ -50,7 +61,7 @@ class Redundant3T1R(RodLevel):
     joint_names = ("x1", "x2", "x3", "x4", "x5", "x6")
     joint_units = ("m",) * _LIMBS
     rotations = (3,)
-    margins = (*RodLevel.margins, "passive_joint", "clearance")
+    margins = by_name(*STANDARD, INTERNAL_DETERMINANT, PASSIVE_JOINT, CLEARANCE)
     mirrors = (("y", "theta"), ("z",))
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=1.0, speed=0.5, force=0.5)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta")

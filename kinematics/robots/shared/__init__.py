@@ -1,6 +1,7 @@
 """What several mechanisms have in common: rotary limbs, paired rods, limbs that coincide."""
 
 from kinematics.robots.shared.coincident_limbs import ALIKE, HalvesGeometry, twins
+from kinematics.robots.shared.internal_determinant import INTERNAL_DETERMINANT
 from kinematics.robots.shared.paired_rods import RodLevel, outline
 from kinematics.robots.shared.rotary_limbs import (
     ArmInertia,
@@ -16,6 +17,7 @@ from kinematics.robots.shared.rotary_limbs import (
 
 __all__ = [
     "ALIKE",
+    "INTERNAL_DETERMINANT",
     "ArmInertia",
     "ArmRanges",
     "HalvesGeometry",

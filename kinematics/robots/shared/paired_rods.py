@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.model import FviBounds, Mechanism, Model
+from kinematics.model import Mechanism, Model
 
 
 class BlockTriangular(NamedTuple):
@@ -33,7 +33,6 @@ class RodLevel(Mechanism):
     rod_velocities: ClassVar[tuple[str, ...]]  # what v holds
     row_combinations: ClassVar[np.ndarray]  # M of (51)
     column_combinations: ClassVar[np.ndarray]  # P of (51)
-    margins = (*Mechanism.margins, "internal_determinant")
 
     @staticmethod
     @abstractmethod
@@ -65,12 +64,6 @@ class RodLevel(Mechanism):
     def internal_determinant(self, pose: Array) -> Array:
         """(...,) det J_int, dimensionless in [-1, 1], sign kept; 0 is an internal singularity."""
         return self._evaluate(_internal_determinant, pose)[0][..., 0]
-
-    def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
-        """Adds |det J_int|, normalised."""
-        if name == "internal_determinant":
-            return ca.fabs(self.internal_determinant_symbolic())
-        return super().margin_components(name, bounds, characteristic_length)
 
 
 def _rod_system(robot: RodLevel, _: Model) -> list[ca.SX]:

@@ -8,8 +8,8 @@ import numpy as np
 from design import Certificate
 from design.certificates.box_tree import PROVED, leaves, root
 from design.certificates.symmetry import one_side
-from design.claims.by_margin import Numbers, claims_of
-from kinematics import Array, Mechanism
+from design.claims import to_show
+from kinematics import Array, ClaimSymbols, Mechanism
 from kinematics.evaluation.program import Program, replay
 from tests.arb import OPERATIONS, arb, ball
 
@@ -18,11 +18,11 @@ class Auditor:
     """Bounds the claims and the margin itself over boxes, pose by pose, with balls."""
 
     def __init__(self, certificate: Certificate, robot: Mechanism) -> None:
-        c, model, numbers = certificate, robot.model(), Numbers.symbols()
+        c, model, claim = certificate, robot.model(), ClaimSymbols.fresh()
         self.names, self.robot, self.certificate = robot.pose_names, robot, c
         middle = c.region.from_unit(np.full(c.region.dimension, 0.5), self.names)
-        claims = claims_of(c.statement(robot), numbers, middle)
-        symbols = [model.pose, ca.vec(claims.scaling), model.geometry, numbers.vector]
+        claims = to_show(c.statement(robot), claim, middle)
+        symbols = [model.pose, ca.vec(claims.scaling), model.geometry, claim.vector]
         gradient = ca.jacobian(claims.expressions, model.pose)
         self._claims = _program(symbols, claims.expressions)
         self._gradient = _program(symbols, gradient)
@@ -31,11 +31,11 @@ class Auditor:
         least, most = root(c.region, self.names)
         self._extent = np.where(most > least, most - least, 1.0)[0]
         self._fixed = [arb(v) for v in robot.geometry.vector()]
-        self._numbers = Numbers.values(c.statement(robot))
+        self._numbers = c.statement(robot).numbers
         self._count = claims.expressions.numel()
         self._matrix, self._chosen = claims.matrix, claims.chosen
         if claims.matrix is not None:
-            self._at = ca.Function("matrix", [model.pose, model.geometry, numbers.vector], [claims.matrix])
+            self._at = ca.Function("matrix", [model.pose, model.geometry, claim.vector], [claims.matrix])
 
     def boxes(self, rng: np.random.Generator, count: int) -> list[tuple[Array, Array]]:
         """Some of the proved boxes at random."""

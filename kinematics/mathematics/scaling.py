@@ -1,10 +1,10 @@
-"""Matrices S that make a given one nearly the identity: what the claims are scaled with, box by box."""
+"""Matrices S that make a given one nearly the identity: what claims are scaled with, box by box."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from kinematics import Array
+from kinematics.arrays import Array
 
 
 def near_inverse(values: Array) -> Array:

@@ -1,0 +1,16 @@
+"""Margins, one file a kind: what must hold at every pose, and what implies it."""
+
+from kinematics.margins.clearance import CLEARANCE
+from kinematics.margins.condition import INVERSE_CONDITION_NUMBER
+from kinematics.margins.force_capability import FORCE_CAPABILITY
+from kinematics.margins.isotropic import F_W, FVI, V_W
+from kinematics.margins.joint_travel import JOINT_TRAVEL
+from kinematics.margins.parallel import DET_J_X
+from kinematics.margins.passive_joint import PASSIVE_JOINT
+from kinematics.margins.reach import REACH
+from kinematics.margins.serial import DET_J_Q, J_Q
+
+# What every mechanism has.
+STANDARD = (REACH, JOINT_TRAVEL, FVI, V_W, F_W, FORCE_CAPABILITY, INVERSE_CONDITION_NUMBER, J_Q, DET_J_Q, DET_J_X)
+
+__all__ = ["CLEARANCE", "PASSIVE_JOINT", "STANDARD"]

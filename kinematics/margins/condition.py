@@ -1,0 +1,80 @@
+"""The inverse condition number of J_mw: its smallest over its largest singular value."""
+
+from __future__ import annotations
+
+from functools import reduce
+
+import casadi as ca
+import numpy as np
+
+from kinematics.arrays import Array
+from kinematics.mathematics import singular_values
+from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
+
+_SURE = 1e-9  # by what a row sum, about 1 in the middle of a box, must be above 0
+
+
+class InverseConditionNumber(Margin):
+    """In [0, 1]: 0 on a singularity, 1 where the robot is isotropic. The 2-norm's, at the actuators."""
+
+    name = "inverse_condition_number"
+    words = "inverse condition number of the homogeneous Jacobian"
+    of_jacobians = True
+
+    def components(self, robot: Mechanism, measure: Measure) -> ca.SX:
+        """Each singular value over the largest."""
+        values = singular_values(robot.homogeneous_jacobian(measure.length))
+        return values / reduce(ca.fmax, ca.vertsplit(values))
+
+    def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
+        """With M = J_mw^T J_mw and any mu: M - c^2 mu and mu - M are positive definite.
+
+        Then all eigenvalues of M lie between c^2 mu and mu. A matrix is positive definite if S^T (.) S is, with any S;
+        and that is, by Gershgorin, where the sum of each row, the moduli beside the diagonal negative, is above 0. S
+        makes both nearly the identity in the middle of a box, and mu there is the mean of the bounds that M leaves it.
+        """
+        if not positive:
+            return super().to_show(robot, claim, inside, positive)
+        j_mw = robot.homogeneous_jacobian(claim.measure.length)
+        n = j_mw.shape[1]
+        scaling = ca.SX.sym("scaling", n, 2 * n + 1)
+        below, above, mu = scaling[:, :n], scaling[:, n : 2 * n], scaling[0, 2 * n]
+        first, second = j_mw @ below, j_mw @ above
+        rows = [
+            _row_sums(first.T @ first - claim.bound**2 * mu * below.T @ below) - _SURE,
+            _row_sums(mu * above.T @ above - second.T @ second) - _SURE,
+        ]
+        with_bound = ca.horzcat(j_mw.T @ j_mw, ca.repmat(claim.bound, n, 1))
+        return ToShow(ca.vertcat(*rows), scaling, with_bound, _chosen)
+
+
+def _row_sums(matrix: ca.SX) -> ca.SX:
+    """(n,) the diagonal less the moduli beside it."""
+    n = matrix.shape[0]
+    return ca.vertcat(*(matrix[i, i] - sum(ca.fabs(matrix[i, j]) for j in range(n) if j != i) for i in range(n)))
+
+
+def _chosen(values: Array) -> Array:
+    """(k, n, n + 1) M and, in a last column, the bound -> (k, n, 2 n + 1) both S and, in a last column, mu."""
+    gram, bound = values[:, :, :-1], values[:, 0, -1]
+    usable = np.isfinite(gram).all(axis=(1, 2))
+    eigenvalues = np.linalg.eigvalsh(np.where(usable[:, None, None], gram, np.eye(gram.shape[1])))
+    smallest, largest = eigenvalues[:, 0], eigenvalues[:, -1]
+    mu = np.sqrt(np.maximum(smallest, 0.0) / bound**2 * largest)[:, None, None]
+    eye = np.eye(gram.shape[1])
+    both = [_root_inverse(gram - (bound**2)[:, None, None] * mu * eye), _root_inverse(mu * eye - gram)]
+    column = np.zeros((*gram.shape[:2], 1))
+    column[:, :1] = mu
+    return np.concatenate([*both, column], axis=2)
+
+
+def _root_inverse(matrices: Array) -> Array:
+    """(k, n, n) S with S^T A S the identity where A is positive definite; any numbers elsewhere."""
+    usable = np.isfinite(matrices).all(axis=(1, 2))
+    eye = np.eye(matrices.shape[1])
+    values, vectors = np.linalg.eigh(np.where(usable[:, None, None], matrices, eye))
+    size = np.maximum(np.abs(values).max(axis=1, keepdims=True), 1e-200)
+    return vectors / np.sqrt(np.maximum(values, 1e-14 * size))[:, None, :]
+
+
+INVERSE_CONDITION_NUMBER = InverseConditionNumber()

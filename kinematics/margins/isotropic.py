@@ -1,0 +1,148 @@
+"""v_w, f_w and the FVI: the worst isotropic speed and force, and both over what is wanted; Shayya et al. (39), (40)."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import casadi as ca
+
+from kinematics.arrays import Array
+from kinematics.mathematics import adjugate
+from kinematics.model import (
+    ClaimSymbols,
+    Margin,
+    Measure,
+    Mechanism,
+    ToShow,
+    fvi,
+    fvi_components,
+    homogeneous,
+    isotropic,
+    isotropic_components,
+)
+
+_REGULAR = 1e-6  # what det M, about 1 in the middle of a box, must exceed
+
+
+class Speed(Margin):
+    """v_w, for unit speed of the actuators."""
+
+    name = "v_w"
+    unit = "m/s for unit joint speed"
+    words = "worst isotropic speed for unit joint speed"
+    of_jacobians = True
+
+    def components(self, robot: Mechanism, measure: Measure) -> ca.SX:
+        """One an actuator."""
+        return isotropic_components(robot.homogeneous_jacobian(measure.length))[0]
+
+    def smallest(self, robot: Mechanism, measure: Measure) -> ca.SX:
+        """With one root for all."""
+        return isotropic(robot.homogeneous_jacobian(measure.length))[0]
+
+    def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
+        """`_Rows.speeds` for a unit speed."""
+        if not positive:
+            return super().to_show(robot, claim, inside, positive)
+        return ToShow(ca.vertcat(*_Rows.of(robot, claim.measure.length).speeds(1, claim.bound)), ca.SX(0, 0))
+
+
+class Force(Margin):
+    """f_w, for unit effort of the actuators."""
+
+    name = "f_w"
+    unit = "N for unit joint effort"
+    words = "worst isotropic force for unit joint effort"
+    of_jacobians = True
+
+    def components(self, robot: Mechanism, measure: Measure) -> ca.SX:
+        """One an actuator."""
+        return isotropic_components(robot.homogeneous_jacobian(measure.length))[1]
+
+    def smallest(self, robot: Mechanism, measure: Measure) -> ca.SX:
+        """With one root for all."""
+        return isotropic(robot.homogeneous_jacobian(measure.length))[1]
+
+    def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
+        """`_Rows.forces` for a unit effort."""
+        if not positive:
+            return super().to_show(robot, claim, inside, positive)
+        rows = _Rows.of(robot, claim.measure.length)
+        return ToShow(ca.vertcat(*rows.forces(1, claim.bound)), rows.scaling, rows.matrix)
+
+
+class Fvi(Margin):
+    """min(v_w / v_wl, f_w / f_wl)."""
+
+    name = "fvi"
+    words = "FVI: worst isotropic speed and force over what is wanted"
+    of_jacobians = True
+
+    def components(self, robot: Mechanism, measure: Measure) -> ca.SX:
+        """Speeds over v_wl, then forces over f_wl, one an actuator each."""
+        return fvi_components(robot.homogeneous_jacobian(measure.length), measure.fvi)
+
+    def smallest(self, robot: Mechanism, measure: Measure) -> ca.SX:
+        """With one root for all speeds and one for all forces."""
+        return fvi(robot.homogeneous_jacobian(measure.length), measure.fvi)
+
+    def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
+        """`_Rows.speeds` and `_Rows.forces`."""
+        if not positive:
+            return super().to_show(robot, claim, inside, positive)
+        given, rows = claim.measure.fvi, _Rows.of(robot, claim.measure.length)
+        speeds = rows.speeds(given.joint_speed, claim.bound * given.speed)
+        forces = rows.forces(given.joint_effort, claim.bound * given.force)
+        return ToShow(ca.vertcat(*speeds, *forces), rows.scaling, rows.matrix)
+
+
+class _Rows(NamedTuple):
+    """What shows isotropic speeds and forces, without quotients.
+
+    With J_mw = diag(1 / b) A: b = 1 where the drives couple the joints.
+
+    Attributes:
+        rows, divisors: A and b.
+        matrix, sizes: what the forces come from: A and b of a square J_mw, else J_mw and 1.
+        scaling: symbols of S.
+    """
+
+    rows: ca.SX
+    divisors: ca.SX
+    matrix: ca.SX
+    sizes: ca.SX
+    scaling: ca.SX
+
+    @classmethod
+    def of(cls, robot: Mechanism, length: Any) -> _Rows:
+        model = robot.model()
+        j_mw = robot.homogeneous_jacobian(length)
+        m, n = j_mw.shape
+        rows, divisors = j_mw, ca.SX.ones(m)
+        if model.drives.is_eye():
+            rows, divisors = homogeneous(model.j_x_at_pose, robot.rotations, length), model.j_q_at_pose
+        matrix, sizes = (rows, divisors) if m == n else (j_mw, ca.SX.ones(m))
+        return cls(rows, divisors, matrix, sizes, ca.SX.sym("scaling", n, n))
+
+    def speeds(self, most: Any, least: ca.SX) -> list[ca.SX]:
+        """Speed i, q'_max / |j_i| >= c > 0 with j_i = a_i / b_i: q'_max^2 b_i^2 - c^2 |a_i|^2 >= 0."""
+        count = self.rows.shape[0]
+        return [(most * self.divisors[i]) ** 2 - least**2 * ca.sumsqr(self.rows[i, :]) for i in range(count)]
+
+    def forces(self, most: Any, least: ca.SX) -> list[ca.SX]:
+        """Force i, tau_max / |p_i| >= c > 0 with p_i = J_mw^+ e_i.
+
+        With J = J_mw S, M = J^T J and det M > 0 it is p_i = S adj(M) J^T e_i / det M, so
+        tau_max^2 det(M)^2 - c^2 |S adj(M) J^T e_i|^2 >= 0. S comes from the QR factors in the middle of the box, so M
+        is nearly the identity. A square J_mw needs no M: with A S in place of J, p_i = b_i S adj(A S) e_i / det(A S).
+        Then b_i = 0 breaks speed i, as a_i = 0 would break det A.
+        """
+        scaled = self.matrix @ self.scaling
+        count, square = scaled.shape[0], scaled.shape[0] == scaled.shape[1]
+        cofactors, det = adjugate(scaled if square else scaled.T @ scaled)
+        columns = self.scaling @ (cofactors if square else cofactors @ scaled.T)
+        forces = [(most * det) ** 2 - (least * self.sizes[i]) ** 2 * ca.sumsqr(columns[:, i]) for i in range(count)]
+        return [*forces, det - _REGULAR]
+
+
+V_W, F_W, FVI = Speed(), Force(), Fvi()

@@ -1,0 +1,34 @@
+"""Joint travel: the room of the driven joints to the ends of their ranges."""
+
+from __future__ import annotations
+
+import math
+
+import casadi as ca
+import numpy as np
+
+from kinematics.model import Margin, Measure, Mechanism
+
+
+class JointTravel(Margin):
+    """Of each driven joint to each end of its range, in the joint's unit; infinite where nothing limits any."""
+
+    name = "joint_travel"
+    unit = "rad or m"
+    words = "room to the nearest end of a driven joint's range"
+    holds_on_paths = True
+
+    def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
+        """The lower ends, then the upper ones; only of joints that have them."""
+        joints, limits = robot.model().inverse, robot.ranges.limits(len(robot.joint_names))
+        rooms = [joints[i] - low for i, (low, _) in enumerate(limits) if np.isfinite(low)]
+        rooms += [high - joints[i] for i, (_, high) in enumerate(limits) if np.isfinite(high)]
+        return ca.vertcat(*rooms) if rooms else ca.SX(math.inf)
+
+    def limbs(self, robot: Mechanism) -> list[int] | None:
+        """That of the joint."""
+        limits = robot.ranges.limits(len(robot.joint_names))
+        return [int(i) + 1 for side in limits.T for i in np.flatnonzero(np.isfinite(side))] or None
+
+
+JOINT_TRAVEL = JointTravel()

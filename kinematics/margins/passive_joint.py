@@ -1,0 +1,42 @@
+"""Passive joints: the room of the joints at the rods' ends to the ends of their ranges."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import casadi as ca
+
+from kinematics.arrays import Array
+from kinematics.machine import Pair, PassiveJoint
+from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
+
+
+class PassiveJoints(Margin):
+    """Of each joint at a rod's end [rad], against `ranges.passive`."""
+
+    name = "passive_joint"
+    unit = "rad"
+    words = "room to the nearest end of a passive joint's range"
+    holds_on_paths = True
+
+    def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
+        """One or two a joint."""
+        return _rows(robot, lambda joint, limits: joint.room(limits))
+
+    def defining_rows(self, robot: Mechanism, claim: ClaimSymbols) -> ca.SX:
+        """By `PassiveJoint.within`: sines and cosines in place of the arctangent."""
+        return _rows(robot, lambda joint, limits: joint.within(limits, claim.bound))
+
+    def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:  # noqa: ARG002
+        """The defining rows."""
+        return ToShow(self.defining_rows(robot, claim), ca.SX(0, 0))
+
+
+def _rows(robot: Mechanism, rows: Callable[[PassiveJoint, Pair], list[ca.SX]]) -> ca.SX:
+    """Expressions of every passive joint and the limits, in the symbols `pose` and `geometry`."""
+    model, limits = robot.model(), robot.ranges.passive
+    joints = robot.passive_joints(model.pose, model.joints, model.g)
+    return model.at_pose(ca.vertcat(*(row for joint in joints for row in rows(joint, limits))))
+
+
+PASSIVE_JOINT = PassiveJoints()
