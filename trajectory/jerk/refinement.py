@@ -39,7 +39,6 @@ _HELD = 1.1  # by what more than needed rows are loosened
 _INSIDE = 1e-2  # barrier where a motion far from the rows is sought
 _ROOM = 5e-4  # of every row that is left where the drives cannot hold the weight: there no stretch mends a motion
 _PRICE = 1e3  # of what loosens the forces, in units of the slow motion's time
-_FASTEST = 1e6  # of x in units of the slow motion's, where nothing bounds it
 _SLOWER = 0.98  # of the rate that just keeps every row
 
 
@@ -142,8 +141,10 @@ def _first(problem: Problem, knots: Array) -> _Found:
 
 
 def _in_unit(rows: Rows, unit: float) -> Rows:
+    """With a bound of x too where nothing moves: the largest of all the others."""
     rows = rows.in_unit(unit)
-    return rows._replace(most=np.minimum(rows.most, _FASTEST))
+    bounded = np.isfinite(rows.most)
+    return rows._replace(most=np.where(bounded, rows.most, rows.most[bounded].max()))
 
 
 def _searched(
