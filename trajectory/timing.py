@@ -12,6 +12,7 @@ from trajectory.knots import located, throughout
 from trajectory.path import Array
 
 _ROUNDING = 1e-9  # of the length or the speed
+_ULPS = 2.0  # of the duration: both knots of an interval are rounded
 _SAME = 1e-13  # of the length: closer knots are one
 _BISECTIONS = 60  # down to rounding
 
@@ -171,11 +172,12 @@ class TimeLaw:
     def _require_joined(self) -> None:
         """Each interval must end where the next one starts."""
         _, ends = self.within(np.array([1.0]))
+        late = _ULPS * np.finfo(float).eps * self.duration  # by which a knot's time may be rounded
         gaps = (
-            ("position", np.abs(ends.position[:, 0] - self.position[1:]), np.ptp(self.position)),
-            ("speed", np.abs(ends.speed[:, 0] - self.speed[1:]), self.speed.max()),
+            ("position", np.abs(ends.position[:, 0] - self.position[1:]), np.ptp(self.position), self.speed[1:]),
+            ("speed", np.abs(ends.speed[:, 0] - self.speed[1:]), self.speed.max(), np.abs(ends.acceleration[:, 0])),
         )
-        for field, gap, scale in gaps:
-            if not (gap <= _ROUNDING * scale).all():
+        for field, gap, scale, steepness in gaps:
+            if not (gap <= _ROUNDING * scale + late * steepness).all():
                 k = int(np.argmax(gap))
                 raise InvalidValue(f"TimeLaw {field}", f"a gap of {gap[k]:.3g} at knot {k + 1}", "intervals that join")

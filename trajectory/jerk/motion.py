@@ -10,7 +10,7 @@ from trajectory.jerk.rows import Array, smoothstep
 from trajectory.timing import TimeLaw
 
 _FAITHFUL = 3e-4  # of a limit of jerk: how far the law's may be from the motion's
-_HALVINGS = 12
+_HALVINGS = 40
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # exact for the slope of S5, of degree 4
 _STEEPEST = 1.35  # w times an interval's size over x; from 1.5 on a cubic may pass below 0
 
