@@ -2,7 +2,7 @@
 
 A point is no corner where the path goes straight on: waypoints in a row without a blend are one leg where each step
 between them is within `STRAIGHT` of the leg's own direction. Such a leg misses a waypoint by no more than that share of
-its steps. Any other waypoint without a blend is a stop, and so is one whose corner would be no longer than `UNTOLD` of the
+its steps. Any other waypoint without a blend is a stop. So is one whose corner would be no longer than `UNTOLD` of the
 path: arc lengths are rounded too much to tell what it does inside.
 
 Where the tool point stands still from one waypoint to the next, the tool turns in place, from stop to stop. Such a leg

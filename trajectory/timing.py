@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -90,6 +91,22 @@ class TimeLaw:
         times = np.concatenate([[0.0], np.cumsum(2 * steps / sums)])
         none = np.zeros_like(steps)
         return cls(name, times, position, speed, np.diff(speed) * sums / (2 * steps), none, none)
+
+    @classmethod
+    def joined(cls, laws: Sequence[TimeLaw]) -> TimeLaw:
+        """One after another, each from where the one before it ends and at its speed; the first law's name."""
+        times = np.cumsum([0.0, *(law.duration for law in laws)])
+        ways = np.cumsum([laws[0].position[0], *(np.ptp(law.position) for law in laws)])
+        after = [slice(0 if k == 0 else 1, None) for k in range(len(laws))]
+        return cls(
+            laws[0].name,
+            np.concatenate([t + law.times[k] for t, law, k in zip(times[:-1], laws, after, strict=True)]),
+            np.concatenate(
+                [s + law.position[k] - law.position[0] for s, law, k in zip(ways[:-1], laws, after, strict=True)]
+            ),
+            np.concatenate([law.speed[k] for law, k in zip(laws, after, strict=True)]),
+            *(np.concatenate([getattr(law, name) for law in laws]) for name in ("acceleration", "jerk", "snap")),
+        )
 
     @property
     def duration(self) -> float:

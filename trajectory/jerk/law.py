@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from kinematics import InvalidValue, Mechanism
 from trajectory.at_rest import require_possible
+from trajectory.errors import PathBeyondLimit, TimingFailed
 from trajectory.jerk.motion import law_in_time
 from trajectory.jerk.refinement import Answer, Problem, fastest
 from trajectory.jerk.refusal import refuse
 from trajectory.jerk.rows import PARTS, Array, smoothstep
 from trajectory.limits import Limits
-from trajectory.path import Path, require_poses_of
+from trajectory.path import Part, Path, require_poses_of
 from trajectory.smoothness import require_smooth
 from trajectory.timed import TimedPath
+from trajectory.timing import TimeLaw
 
 INTERVALS = 200
 LEAST_INTERVALS = 20
+_SHORT = (1e-5, 1e-3)  # of the path: pieces in whose middle a motion rests where none was found without
 _CHECKED = 2000  # intervals of arc length between which the joints' positions are looked at
 
 
 def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = INTERVALS) -> TimedPath:
     """The fastest law from rest to rest, with zero s'' at both ends.
+
+    Where the search finds none, one that rests in short corners too.
 
     Args:
         robot: any mechanism with the path's kind of pose.
@@ -45,12 +52,48 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     require_smooth(path)
     require_possible(robot, path, limits, payload, np.linspace(0.0, path.length, _CHECKED + 1))
     problem = Problem(robot, path, limits, payload)
+    try:
+        return TimedPath(path, _passing(problem, intervals))
+    except TimingFailed:
+        for share in _SHORT:
+            if (law := _resting(problem, intervals, share)) is not None:
+                return TimedPath(path, law)
+        raise
+
+
+def _passing(problem: Problem, intervals: int) -> TimeLaw:
+    """The law that rests at both ends alone."""
     answer = fastest(problem, intervals)
-    slower = max(1.0, answer.use) ** 0.5  # by the little that it is over a limit
-    law = law_in_time(answer.motion, path.length, answer.unit * slower, _per_jerk(answer, path.length))
+    length = problem.path.length
+    law = law_in_time(answer.motion, length, answer.unit, _per_jerk(answer, length))
     if law is None:
         refuse(*problem, answer.sizes.size)
-    return TimedPath(path, law)
+    return law
+
+
+def _resting(problem: Problem, intervals: int, share: float) -> TimeLaw | None:
+    """The law that rests in the middle of each run of pieces that are so short a share of the path too.
+
+    There a rest costs next to nothing, and the scales of what is left are closer. None where there are no such pieces,
+    or no such law.
+    """
+    path = problem.path
+    rests = _middles(np.array(path.knots), share * path.length)
+    if not rests:
+        return None
+    parts = [Part(path, a, b) for a, b in pairwise((0.0, *rests, path.length))]
+    try:
+        return TimeLaw.joined([_passing(problem._replace(path=part), intervals) for part in parts])
+    except (TimingFailed, PathBeyondLimit):
+        return None
+
+
+def _middles(knots: Array, short: float) -> list[float]:
+    """Of the runs of pieces that are so short, but at both ends."""
+    is_short = np.diff(knots) <= short
+    inside = np.concatenate([[False], is_short[1:-1], [False]]) if is_short.size > 2 else np.zeros(1, dtype=bool)
+    first, last = (np.flatnonzero(np.diff(inside.astype(int)) == step) + 1 for step in (1, -1))
+    return [float(knots[a] + knots[b]) / 2 for a, b in zip(first, last, strict=True)]
 
 
 def _per_jerk(answer: Answer, length: float) -> Array:
