@@ -21,14 +21,16 @@ from trajectory.timing import TimeLaw
 
 INTERVALS = 200
 LEAST_INTERVALS = 20
-_SHORT = (1e-5, 1e-3)  # of the path: pieces in whose middle a motion rests where none was found without
+# Of the path: pieces in whose middle a motion may rest. With the first ones it is always tried: their scales are so far
+# from the path's that a search may end with a slower motion.
+_SHORT = (1e-5, 1e-3)
 _CHECKED = 2000  # intervals of arc length between which the joints' positions are looked at
 
 
 def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = INTERVALS) -> TimedPath:
     """The fastest law from rest to rest, with zero s'' at both ends.
 
-    Where the search finds none, one that rests in short corners too.
+    It may rest in very short corners too, where that is found to be faster or nothing else is found.
 
     Args:
         robot: any mechanism with the path's kind of pose.
@@ -52,13 +54,18 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     require_smooth(path)
     require_possible(robot, path, limits, payload, np.linspace(0.0, path.length, _CHECKED + 1))
     problem = Problem(robot, path, limits, payload)
+    failed: TimingFailed | None = None
+    laws = []
     try:
-        return TimedPath(path, _passing(problem, intervals))
-    except TimingFailed:
-        for share in _SHORT:
-            if (law := _resting(problem, intervals, share)) is not None:
-                return TimedPath(path, law)
-        raise
+        laws.append(_passing(problem, intervals))
+    except TimingFailed as error:
+        failed = error
+    for share in _SHORT:
+        if (share == _SHORT[0] or not laws) and (law := _resting(problem, intervals, share)) is not None:
+            laws.append(law)
+    if failed is not None and not laws:
+        raise failed
+    return TimedPath(path, min(laws, key=lambda law: law.duration))
 
 
 def _passing(problem: Problem, intervals: int) -> TimeLaw:
