@@ -13,8 +13,9 @@ from kinematics.errors import LinkwrightError
 from trajectory import Limits, RoundedPath, certify_path, jerk_limited, pieces, repair, time_optimal
 
 pytestmark = pytest.mark.long
-SEED, COUNT = 20261130, 40
-BOXES = {  # places, over the robot's scale, and angles
+SEED, COUNT = 20261130, 30
+Places = tuple[float, ...]
+BOXES: dict[type, tuple[Places, Places, float]] = {  # places, over the robot's scale, and angles
     Par4: ((-0.12, -0.12, -0.75), (0.12, 0.12, -0.6), 0.6),
     Heli4: ((-0.2, -0.2, -0.85), (0.2, 0.2, -0.65), 1.0),
     Delta: ((-0.2, -0.2, -0.85), (0.2, 0.2, -0.65), 0.0),
