@@ -92,8 +92,10 @@ def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyP
         field = fields[name]
         pairs = bounds if field.shape and isinstance(bounds, tuple) else (bounds,)
         ends = [_numbers(pair) for pair in pairs]
-        if len(ends) != math.prod(field.shape) or any(
-            len(pair) != 2 or not field.allows(pair[0], pair[1]) for pair in ends
+        if (
+            len(ends) != math.prod(field.shape)
+            or any(len(pair) != 2 or not field.allows(pair[0], pair[1]) for pair in ends)
+            or all(pair[0] == pair[1] for pair in ends)
         ):
             yield ("optimise", "variables", name)
     for i, names in _rows(optimise, "sums", "fields"):
@@ -177,7 +179,11 @@ def _dimensions(field: GeometryField) -> Key:
 
 
 def _bounds(field: GeometryField) -> Key:
-    pairs = f", one list of {math.prod(field.shape)} such pairs, entry by entry" if field.shape else ""
+    pairs = (
+        f", one list of {math.prod(field.shape)} such pairs, entry by entry; low = high fixes an entry, but not all"
+        if field.shape
+        else ""
+    )
     return Key(f"low < high{_condition(field)}{pairs}", Dimension(field.dimension), place=_is_place(field))
 
 
