@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kinematics import InvalidValue, Mechanism
+from kinematics.continuation import continued
 from kinematics.drives import from_actuators, to_actuators
 from kinematics.dynamics import inverse_dynamics
 from kinematics.motion import actuator_motion
@@ -197,13 +198,13 @@ def _of_joints(robot: Mechanism, profile: Profile, near: Array, payload: float) 
 def _followed(robot: Mechanism, joints: Array, near: Array) -> Array:
     """(k, n) poses of joints (k, m), from one near the first on: each found from one less than half a turn away."""
     turns = [unit == "rad" for unit in robot.joint_units]
-    first = robot.forward(joints[0], near=near)
+    first = continued(robot, joints[0], near)
     parts = (np.abs(joints - joints[0])[:, turns].max(axis=1, initial=0.0) // _SWING).astype(int)
     pose, last = np.empty((len(joints), len(robot.pose_names))), first
     for part in range(parts.max() + 1):
         rows = np.flatnonzero(parts == part)
         if rows.size:
-            pose[rows] = robot.forward(joints[rows], near=last)
+            pose[rows] = continued(robot, joints[rows], last)
             last = pose[rows[-1]]
     return pose
 
