@@ -107,6 +107,8 @@ def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyP
     for i, margin in _rows(data, "requirement", "margin"):
         if margin not in mechanism.margins:
             yield ("requirement", i, "margin")
+        if margin == "reach" and _is_below_zero(data["requirement"][i].get("at_least")):
+            yield ("requirement", i, "at_least")
 
 
 def _counted(node: Key | Table, joints: int) -> Key | Table:
@@ -208,6 +210,10 @@ def _rows(data: Mapping[str, Any], name: str, key: str) -> Iterator[tuple[int, A
     for i, row in enumerate(rows if isinstance(rows, tuple) else ()):
         if isinstance(row, dict) and key in row:
             yield i, row[key]
+
+
+def _is_below_zero(value: object) -> bool:
+    return isinstance(value, int | float) and value < 0
 
 
 def _numbers(value: object) -> list[float]:

@@ -100,7 +100,7 @@ class Requirement(Model):
 
     margin: Annotated[str, Key("one of")]
     """What is required."""
-    at_least: Annotated[float, Key("a finite number")]
+    at_least: Annotated[float, Key("a finite number, of reach 0 or more")]
     """At every pose of the region and on the cycle."""
 
 

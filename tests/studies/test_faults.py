@@ -72,6 +72,12 @@ FAULTS = {
     "variable": ("pitch_mm", "pich_mm", "optimise.variables.pich_mm", "did you mean pitch_mm?"),
     "bounds": ("[20, 120]", "[120, 20]", "optimise.variables.pitch_mm", "expected low < high, 0 left out (mm"),
     "equal bounds": ("[20, 120]", "[20, 20]", "optimise.variables.pitch_mm", "expected low < high, 0 left out (mm"),
+    "less than reach": (
+        '"J_q"\nat_least = 0.3',
+        '"reach"\nat_least = -0.3',
+        "requirement.at_least",
+        "of reach 0 or more",
+    ),
     "no entry moves": (
         "pitch_mm = [20, 120]",
         "azimuths_deg = [[0, 0], [180, 180], [90, 90], [270, 270]]",
