@@ -15,7 +15,7 @@ from kinematics import written
 from kinematics.block_program import BlockProgram
 from kinematics.bodies import InertiaRecord
 from kinematics.clearance import segment_gap_symbolic
-from kinematics.continuation import continued
+from kinematics.continuation import forward_near
 from kinematics.definition import Definition
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.geometry import GeometryRecord
@@ -130,11 +130,12 @@ class Mechanism(Definition):
         Args:
             joints: of the working mode's limbs [m or rad].
             near: (n,) or (..., n) poses to continue from, each in the assembly mode that is wanted: the joints move
-                there on a straight line, without a singularity on the way. By default the assembly mode of `home`.
+                there on a straight line without a singularity on the way, or else the pose does. By default the
+                assembly mode of `home`.
         """
         if near is None:
             return self.working_forward(joints)
-        return continued(self, self._joints(joints), self._poses(near))
+        return forward_near(self, self._joints(joints), self._poses(near))
 
     def closure_residual(self, pose: Array, joints: Array) -> Array:
         """(..., n), (..., m) -> (..., m) the loop closure; zero when they belong together."""

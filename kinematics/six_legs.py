@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.bodies import Bodies, Particle
-from kinematics.continuation import continued
+from kinematics.continuation import reached
 from kinematics.gough_stewart_forward import ForwardSolution, solve_forward
 from kinematics.mechanism import Array, Mechanism
 from kinematics.orientation import angles, rotation, turn
@@ -83,7 +83,7 @@ class SixLegs(Mechanism):
 
     def working_forward(self, joints: Array) -> Array:
         """(..., 6) -> (..., 6): continued from home."""
-        return continued(self, self._joints(joints), self.home)
+        return reached(self, self._joints(joints), self.home)
 
     def newton(self, joints: Array, start: Array | None = None, iterations: int = 30) -> ForwardSolution:
         """Newton's method from a start near, [8.6.4.2]: where it converged, in how many steps and with which error.

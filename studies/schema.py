@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from studies.questions import digest_of, plain
-from studies.schema_base import Interval, Model, Name, Positive, gathered, table_of
+from studies.schema_base import Entry, Interval, Model, Name, Positive, gathered, table_of
 from studies.schema_hardware import Inertia, Ranges
 from studies.schema_trajectory import Trajectory
 from studies.units import Dimension, Key, Table
@@ -89,8 +89,8 @@ class Optimise(Model):
     """Of the random starts."""
     starts: Annotated[int, Field(ge=1, le=10_000), Key("a whole number from 1 to 10000")] = 3
     """Geometries to start from, the study's own first."""
-    variables: Annotated[dict[str, Interval | tuple[Interval, ...]], Field(min_length=1), Table({})]
-    """What may change, by geometry field: (low, high), one for each entry of a tuple."""
+    variables: Annotated[dict[str, Interval | tuple[Entry, ...]], Field(min_length=1), Table({})]
+    """What may change, by field: (low, high), one for each entry of a tuple; an entry with low = high stays there."""
     sums: Annotated[tuple[Sum, ...], table_of(Sum, rows=True)] = ()
     """Limits of sums of lengths."""
 
@@ -100,7 +100,7 @@ class Requirement(Model):
 
     margin: Annotated[str, Key("one of")]
     """What is required."""
-    at_least: Annotated[float, Key("a finite number")]
+    at_least: Annotated[float, Key("a finite number, of reach 0 or more")]
     """At every pose of the region and on the cycle."""
 
 
