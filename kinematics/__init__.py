@@ -31,7 +31,7 @@ from kinematics.evaluation import (
 from kinematics.machine import UNIFORM, DriveTrain, GeometryRecord, InertiaRecord, JointRanges
 from kinematics.mathematics import adjugate, determinant, segment_gap_symbolic, volume
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
-from kinematics.model import FviBounds, Mechanism, Model, homogeneous, sides
+from kinematics.model import FviBounds, Mechanism, Model, continued, homogeneous, sides
 from kinematics.multibody import mjcf
 from kinematics.printed_bounds import rounded_down, rounded_up
 from kinematics.robots import MECHANISMS, Delta, Hexa
@@ -86,6 +86,7 @@ __all__ = [
     "adjugate",
     "bulk",
     "checked",
+    "continued",
     "derivatives_along",
     "determinant",
     "enclose",

@@ -1,7 +1,7 @@
 """A mechanism's model: what it defines, and what follows from its loop closure."""
 
 from kinematics.model.aspect import in_aspect, joined_to_home
-from kinematics.model.continuation import continued, polished
+from kinematics.model.continuation import continued, polished, reached
 from kinematics.model.indices import FviBounds, homogeneous, sides
 from kinematics.model.joint_redundancy import BestFit, EncoderCheck, check_encoders, least_squares
 from kinematics.model.mechanism import Mechanism
@@ -25,5 +25,6 @@ __all__ = [
     "joined_to_home",
     "least_squares",
     "polished",
+    "reached",
     "sides",
 ]
