@@ -60,6 +60,16 @@ class Region(ABC):
         """(..., n) -> (...,) how far each pose is inside the nearest boundary, negative beyond it [m or rad]."""
 
     @abstractmethod
+    def grown(self, share: float) -> Region:
+        """With each bound further out, of an angle by `share` radians, of a length by that share of `size`."""
+
+    @property
+    def size(self) -> float:
+        """The largest distance of a bound of x, y or z from 0 [m]: what makes a distance large or small here."""
+        bounds = [bound for name, pair in self.intervals.items() if name in ("x", "y", "z") for bound in pair]
+        return float(np.abs(bounds).max(initial=0.0))
+
+    @abstractmethod
     def narrowed(self, given: Mapping[str, Array]) -> dict[str, tuple[Array | float, Array | float]]:
         """Bounds of each coordinate that is not given, where those that are have these values (...,)."""
 
@@ -187,6 +197,14 @@ class Box(Region):
         low, high = np.array([self._intervals[name] for name in names]).T
         return np.minimum(poses - low, high - poses).min(axis=-1)
 
+    def grown(self, share: float) -> Box:
+        """By the largest of its own lengths."""
+        return self._grown(share, self.size)
+
+    def _grown(self, share: float, size: float) -> Box:
+        by = {name: share * (size if name in ("x", "y", "z") else 1.0) for name in self._intervals}
+        return Box(**{name: (low - by[name], high + by[name]) for name, (low, high) in self._intervals.items()})
+
     def contains(self, poses: Array, names: Sequence[str], slack: float = _ROUNDING) -> Array:
         """Between all bounds."""
         low, high = np.array([self._intervals[name] for name in names]).reshape(-1, 2).T
@@ -260,6 +278,11 @@ class Cylinder(Region):
         others = [name for name in names if name not in ("x", "y")]
         rest = self._rest.room(poses[..., [names.index(name) for name in others]], others)
         return np.minimum(rest, self.radius - np.hypot(x, y))
+
+    def grown(self, share: float) -> Cylinder:
+        """By the largest of the radius and the heights."""
+        by = share * self.size
+        return Cylinder(self.radius + by, **self._rest._grown(share, self.size).intervals)
 
     def contains(self, poses: Array, names: Sequence[str], slack: float = _ROUNDING) -> Array:
         """Within the circle and between the other bounds."""

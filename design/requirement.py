@@ -15,7 +15,7 @@ class Requirement:
 
 @dataclass(frozen=True)
 class Bounds:
-    """A design variable: one item of a geometry field, between two values."""
+    """A design variable: one item of a geometry field, between two values; it is fixed where they are the same."""
 
     field: str
     item: int  # 0 for a plain number

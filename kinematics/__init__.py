@@ -31,7 +31,18 @@ from kinematics.evaluation import (
 from kinematics.machine import UNIFORM, DriveTrain, GeometryRecord, InertiaRecord, JointRanges
 from kinematics.margins import CLEARANCE, PASSIVE_JOINT, STANDARD
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
-from kinematics.model import ClaimSymbols, FviBounds, Margin, Measure, Mechanism, Model, ToShow, by_name, sides
+from kinematics.model import (
+    ClaimSymbols,
+    FviBounds,
+    Margin,
+    Measure,
+    Mechanism,
+    Model,
+    ToShow,
+    by_name,
+    continued,
+    sides,
+)
 from kinematics.multibody import mjcf
 from kinematics.printed_bounds import rounded_down, rounded_up
 from kinematics.robots import MECHANISMS, Delta, Hexa
@@ -93,6 +104,7 @@ __all__ = [
     "bulk",
     "by_name",
     "checked",
+    "continued",
     "derivatives_along",
     "enclose",
     "evaluate",

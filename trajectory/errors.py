@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path as FilePath
+from typing import NamedTuple
 
 from kinematics import InvalidValue, LinkwrightError
 
@@ -117,15 +118,44 @@ class TimingFailed(LinkwrightError):
         super().__init__(f"{law} law: {found}; asked for {what}")
 
 
+class JointPeak(NamedTuple):
+    """Where a limited quantity is largest over its limit: the joint, when [s], the value there and the limit, SI."""
+
+    joint: str
+    time: float
+    value: float
+    limit: float
+
+    @property
+    def ratio(self) -> float:
+        """Its size over the limit."""
+        return abs(self.value) / self.limit
+
+    def __str__(self) -> str:
+        return f"{self.joint} at t = {self.time:.6g} s: {self.value:.6g}, limit {self.limit:.6g}"
+
+
 class LimitsExceeded(LinkwrightError):
-    """A motion breaks a limit by more than may be repaired."""
+    """A motion breaks a limit by more than may be repaired; `peaks` says where, as far as that is known."""
 
     exit_status = 1
 
-    def __init__(self, failures: Mapping[str, float], bound: float) -> None:
-        self.failures, self.bound = dict(failures), bound
-        what = ", ".join(f"{name} at {value:.6g}" for name, value in self.failures.items())
+    def __init__(
+        self, failures: Mapping[str, float], bound: float, peaks: Mapping[str, JointPeak] | None = None
+    ) -> None:
+        self.failures, self.bound, self.peaks = dict(failures), bound, dict(peaks or {})
+
+        def told(name: str, value: float) -> str:
+            where = f" ({self.peaks[name]})" if name in self.peaks else ""
+            return f"{name} at {value:.6g}{where}"
+
+        what = ", ".join(told(name, value) for name, value in self.failures.items())
         super().__init__(f"the motion has {what} of its limit; expected at most {bound:.6g}")
+
+    @classmethod
+    def of_peaks(cls, peaks: Mapping[str, JointPeak]) -> LimitsExceeded:
+        """Of the peaks of a motion that are over their limits."""
+        return cls({name: peak.ratio for name, peak in peaks.items()}, 1.0, peaks)
 
 
 class SetpointFileError(LinkwrightError):

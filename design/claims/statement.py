@@ -20,7 +20,8 @@ class Statement:
         bounds, length: what the FVI is measured with; the characteristic length in metres.
 
     Raises:
-        InvalidValue: no such margin, a bound that is not finite, or a length that is not above 0.
+        InvalidValue: no such margin, a bound that is not finite, one of `reach` below 0, or a length that is not
+            above 0.
     """
 
     robot: Mechanism
@@ -34,6 +35,8 @@ class Statement:
             known = ", ".join(self.robot.margins)
             raise InvalidValue(f"{type(self.robot).__name__} margin", self.margin, f"one of {known}")
         finite(f"at_least of {self.margin}", self.at_least, "a finite number, in the margin's unit")
+        if self.margin == "reach" and self.at_least < 0.0:
+            raise InvalidValue("at_least of reach", self.at_least, "0 m or more: every claim claims reach itself")
         positive("characteristic_length", self.length, "a finite length > 0 m")
 
     @classmethod

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
@@ -15,6 +16,7 @@ from design.synthesis.nlp import NlpSolution, Problem, solve
 from kinematics import Array, InvalidGeometry, Mechanism
 
 Progress = Callable[[str], None]
+_OF_THE_WAY = 0.9  # to where a geometry that is drawn back should hold: the margins are no straight lines
 _DIGITS = 8  # of a variable, so that a file holds exactly what was checked
 
 
@@ -64,7 +66,14 @@ class Candidate:
 
 @dataclass
 class Exchange:
-    """What all rounds share, and the best geometry seen."""
+    """What all rounds share, and the best geometry seen.
+
+    Attributes:
+        seen: the best geometry that was looked at densely; the prototype where its bounds and sums allow that.
+        last: the latest one that broke a requirement.
+        looked: the longest dense search [s]. The solver leaves time for two, so that where it is stopped there is still
+            something to say.
+    """
 
     problem: Problem
     region: Region
@@ -72,6 +81,15 @@ class Exchange:
     budget: Budget
     progress: Progress
     seen: Candidate | None = field(default=None, init=False)
+    last: Candidate | None = field(default=None, init=False)
+    looked: float = field(default=0.0, init=False)
+
+    def look(self, robot: Mechanism) -> dict[str, WorstPoses]:
+        """Its worst poses by margin, as far as the time allows."""
+        started = time.perf_counter()
+        worst = worst_of(self.problem, robot, self.region, self.about, self.budget.left)
+        self.looked = max(self.looked, time.perf_counter() - started)
+        return worst
 
     def note(self, robot: Mechanism, worst: dict[str, WorstPoses]) -> Candidate:
         """A geometry that was looked at densely; the best one is kept."""
@@ -79,6 +97,7 @@ class Exchange:
         found = Candidate(robot, worst, worst[self.problem.objective].value, short)
         if np.isfinite(found.objective) and (self.seen is None or found.rank > self.seen.rank):
             self.seen = found
+        self.last = found if found.shortfall > 0.0 else self.last
         return found
 
     def better_than(self, found: Candidate, slack: float) -> Candidate | None:
@@ -100,25 +119,33 @@ class Exchange:
             raise SynthesisFailed(what, solution.status, self.seen) from error
 
     def best_of(self, poses: Array, firsts: list[Array], sizes: Mapping[str, float]) -> NlpSolution:
-        """The best converged solution of all starts; each may take its share of the time."""
+        """The best converged solution of all starts; each may take half of the time that is left.
+
+        Once one converged, the starts together leave half of all the time to the rounds that follow.
+        """
         best: NlpSolution | None = None
+        half, tried = self.budget.share(2), []
         for k, first in enumerate(firsts, start=1):
-            share = self.budget.share(len(firsts) - k + 2)
+            share = half.share(len(firsts) - k + 1) if best else self.budget.share(2)
             solution = solve(self.problem, poses, first, sizes, share.left)
             self.progress(f"start {k} of {len(firsts)}: {solution.objective:.5g} ({solution.status})")
+            tried.append(solution)
             if solution.converged and (best is None or solution.objective > best.objective):
                 best = solution
-            if self.budget.spent:
+            if self.budget.spent or (best and half.spent):
                 break
-        return best if best is not None else self._fail(poses, firsts, solution)
+        return best if best is not None else self._fail(poses, tried)
 
     def first_of(self, poses: Array, firsts: list[Array], sizes: Mapping[str, float]) -> NlpSolution:
         """The first converged solution; the last optimum may not reach poses that were added, then the others start."""
+        tried = []
         for k, first in enumerate(firsts):
-            solution = solve(self.problem, poses, first, sizes, self.budget.share(len(firsts) - k).left)
+            seconds = max(self.budget.left - 2 * self.looked, 0.0) / (len(firsts) - k)
+            solution = solve(self.problem, poses, first, sizes, seconds)
             if solution.converged:
                 return solution
-        return self._fail(poses, firsts, solution)
+            tried.append(solution)
+        return self._fail(poses, tried)
 
     def require_time(self, done: str, solution: NlpSolution) -> None:
         """Check the budget.
@@ -126,18 +153,47 @@ class Exchange:
         Raises:
             SynthesisFailed: it is used up.
         """
-        if self.budget.spent:
-            raise SynthesisFailed(f"the budget of {self.budget} was used up {done}", solution.status, self.seen)
+        if self.budget.left <= 2 * self.looked:
+            raise self.failed(f"the budget of {self.budget} was used up {done}", solution)
 
-    def _fail(self, poses: Array, firsts: list[Array], last: NlpSolution) -> NlpSolution:
-        """Raise what a solution that did not converge comes to, with its geometry where that is the best seen."""
-        robot = self.robot_of(last)
+    def failed(self, reason: str, solution: NlpSolution) -> SynthesisFailed:
+        """What to raise, with the best geometry seen; the last one is drawn back to it until its requirements hold."""
+        drawn = self._drawn_back()
+        if drawn is not None:
+            self.note(drawn, self.look(drawn))
+        return SynthesisFailed(reason, solution.status, self.seen)
+
+    def _drawn_back(self) -> Mechanism | None:
+        """Between the best geometry seen, where that holds, and a better one that does not: where all should hold.
+
+        The margins' worst values are taken to be straight lines between the two.
+        """
+        best, beyond = self.seen, self.last
+        if best is None or beyond is None or best.shortfall > 0.0 or beyond.objective <= best.objective:
+            return None
+        share = 1.0
+        for requirement in self.problem.requirements:
+            room = best.worst[requirement.margin].value - requirement.at_least
+            short = requirement.at_least - beyond.worst[requirement.margin].value
+            share = min(share, room / (room + short)) if short > 0.0 else share
+        places = self.problem.places()
+        start, end = (found.robot.geometry.vector()[places] for found in (best, beyond))
+        try:
+            robot = self.problem.robot_with(rounded(self.problem, start + _OF_THE_WAY * share * (end - start)))
+        except InvalidGeometry:
+            return None
+        return robot if self.problem.allows(robot) else None
+
+    def _fail(self, poses: Array, tried: list[NlpSolution]) -> NlpSolution:
+        """Raise what solutions that did not converge come to; the one that breaks the least is looked at densely."""
+        nearest = max(tried, key=lambda one: (-sum(one.violations.values()), one.objective))
+        robot = self.robot_of(nearest)
         if not self.budget.spent:
-            self.note(robot, worst_of(self.problem, robot, self.region, self.about, self.budget.left))
-        self.require_time(f"by the NLP over {len(poses)} poses", last)
-        short = "; ".join(f"{name} falls short by {by:.3g} of its size" for name, by in last.violations.items())
-        what = f"each of the NLP's {len(firsts)} starts over {len(poses)} poses did not converge"
-        raise SynthesisFailed(f"{what}{': ' + short if short else ''}", last.status, self.seen)
+            self.note(robot, self.look(robot))
+        self.require_time(f"by the NLP over {len(poses)} poses", nearest)
+        short = "; ".join(f"{name} falls short by {by:.3g} of its size" for name, by in nearest.violations.items())
+        what = f"each of the NLP's {len(tried)} starts over {len(poses)} poses did not converge"
+        raise self.failed(f"{what}{': ' + short if short else ''}", nearest)
 
 
 def rounded(problem: Problem, values: Array) -> Array:

@@ -55,6 +55,11 @@ class Problem:
         """(k,) lowest and (k,) highest values of the variables."""
         return np.array([v.low for v in self.variables]), np.array([v.high for v in self.variables])
 
+    def moving(self) -> Array:
+        """(k,) whether each variable has a range to move in, 1 or 0."""
+        low, high = self.bounds()
+        return np.asarray(high > low, dtype=float)
+
     def from_unit(self, unit: Any) -> list[Any]:
         """k variables from numbers or symbols (k,) in [0, 1]: powers between bounds that are decades apart."""
         pairs = zip(*self.bounds(), strict=True)
@@ -64,10 +69,12 @@ class Problem:
         ]
 
     def to_unit(self, values: Array) -> Array:
-        """(k,) the inverse of `from_unit`, held in [0, 1]."""
+        """(k,) the inverse of `from_unit`, held in [0, 1]; 0 for what is fixed."""
         pairs = zip(*self.bounds(), strict=True)
         found = [
-            math.log(max(v, low) / low) / math.log(high / low) if _in_powers(low, high) else (v - low) / (high - low)
+            math.log(max(v, low) / low) / math.log(high / low)
+            if _in_powers(low, high)
+            else (v - low) / ((high - low) or math.inf)
             for (low, high), v in zip(pairs, values, strict=True)
         ]
         return np.clip(found, 0.0, 1.0)
@@ -172,7 +179,7 @@ def solve(
     answer = solver(
         x0=np.append(first, lowest),
         lbx=np.append(0 * first, -np.inf),
-        ubx=np.append(0 * first + 1, np.inf),
+        ubx=np.append(problem.moving(), np.inf),
         lbg=0.0,
         ubg=np.inf,
     )
@@ -268,7 +275,7 @@ def active_sets(
         found += [
             f"{bound.field}{item} at its {side} bound {edge:g}"
             for side, edge, at in (("lower", bound.low, 0.0), ("upper", bound.high, 1.0))
-            if abs(unit - at) <= closeness
+            if bound.low < bound.high and abs(unit - at) <= closeness
         ]
     for limit in problem.sums:
         total = max(vector[places].sum() for places in problem.summed(limit))

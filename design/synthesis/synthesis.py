@@ -14,8 +14,7 @@ import numpy as np
 from design.budget import Budget
 from design.region import Region
 from design.sampling import DENSE, WorstPoses
-from design.synthesis.errors import SynthesisFailed
-from design.synthesis.exchange import Candidate, Exchange, Progress, Round, worst_of
+from design.synthesis.exchange import Candidate, Exchange, Progress, Round
 from design.synthesis.nlp import NlpSolution, Problem
 from design.synthesis.starts import reaching_starts, require_possible_sums
 from kinematics import Array, Mechanism, positive, whole
@@ -78,7 +77,7 @@ def synthesise(
     exchange = Exchange(problem, region, about, Budget(seconds), progress)
     region.check(problem.robot.pose_names)
     require_possible_sums(problem)
-    before = worst_of(problem, problem.robot, region, about, exchange.budget.left)
+    before = exchange.look(problem.robot)
     if problem.allows(problem.robot):
         exchange.note(problem.robot, before)
     poses = region.spread(problem.robot.pose_names)
@@ -101,7 +100,7 @@ def _exchanged(
     rounds: list[Round] = []
     while len(rounds) < most_rounds:
         robot = exchange.robot_of(solution)
-        after = worst_of(problem, robot, exchange.region, exchange.about, exchange.budget.left)
+        after = exchange.look(robot)
         found = exchange.note(robot, after)
         rounds.append(_round(solution, found, len(poses)))
         exchange.progress(f"round {len(rounds)}: {rounds[-1]}")
@@ -111,10 +110,10 @@ def _exchanged(
         if settled and better is None and all(worst.complete for worst in after.values()):
             return Synthesis(robot, before, after, rounds, solution.status, after[problem.objective].sampled)
         exchange.require_time(f"after {len(rounds)} rounds, the last one: {rounds[-1]}", solution)
-        poses = np.concatenate([poses, *(_offenders(problem, solution, sizes, *item) for item in after.items())])
+        poses = np.concatenate([poses, *(_offenders(problem, solution, sizes, slack, *item) for item in after.items())])
         nearest = better.robot.geometry.vector()[problem.places()] if settled and better else solution.values
         solution = exchange.first_of(poses, [nearest, *firsts], sizes)
-    raise SynthesisFailed(f"the exchange did not settle; its last round: {rounds[-1]}", solution.status, exchange.seen)
+    raise exchange.failed(f"the exchange did not settle; its last round: {rounds[-1]}", solution)
 
 
 def _round(solution: NlpSolution, found: Candidate, poses: int) -> Round:
@@ -129,11 +128,15 @@ def _round(solution: NlpSolution, found: Candidate, poses: int) -> Round:
 
 
 def _offenders(
-    problem: Problem, solution: NlpSolution, sizes: Mapping[str, float], margin: str, worst: WorstPoses
+    problem: Problem, solution: NlpSolution, sizes: Mapping[str, float], slack: float, margin: str, worst: WorstPoses
 ) -> Array:
-    """(k, n) poses at which the last answer does worse than it promised."""
+    """(k, n) poses at which the last answer does worse than it promised, of the objective by more than `slack`.
+
+    Where the objective is as good as promised hundreds of its lowest poses lie within the slack, and would only make
+    the next NLP slow.
+    """
     spare = problem.spare * sizes[margin]
     floors = [r.at_least + spare for r in problem.requirements if r.margin == margin]
     if margin == problem.objective:
-        floors.append(solution.objective)
+        floors.append(solution.objective - slack)
     return worst.poses[worst.values < max(floors)]

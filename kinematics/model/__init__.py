@@ -1,7 +1,7 @@
 """A mechanism's model: what it defines, and what follows from its loop closure."""
 
 from kinematics.model.aspect import in_aspect, joined_to_home
-from kinematics.model.continuation import continued, polished
+from kinematics.model.continuation import continued, polished, reached
 from kinematics.model.indices import (
     FviBounds,
     fvi,
@@ -43,6 +43,7 @@ __all__ = [
     "joined_to_home",
     "least_squares",
     "polished",
+    "reached",
     "sides",
     "signed",
 ]

@@ -10,21 +10,16 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.evaluation import evaluate
-from kinematics.mathematics import determinant
-from kinematics.model import expressions
 from kinematics.model.continuation import continued, state_at
+from kinematics.model.pose_line import joined
 
 if TYPE_CHECKING:
     from kinematics.model.mechanism import Mechanism
-    from kinematics.model.symbolic_model import Model
 
 _SINGULAR = 1e-6  # of home's value: where rounding of a double root, halved digits, says nothing of the side
-_ON_LINE = 24  # poses on the line from home at which the side of the singularities is looked at
 
 
 def in_aspect(robot: Mechanism, poses: Array, joints: Array) -> Array:
@@ -61,28 +56,9 @@ def joined_to_home(robot: Mechanism, rows: Array, poses: Array, joints: Array) -
     if _at_home(robot)[0] == 0.0:
         return result
     lost = np.isfinite(joints).all(axis=1)
-    lost[found] = ~_joined(robot, result[found])
+    lost[found] = ~joined(robot, robot.home, result[found])
     result[lost] = continued(robot, joints[lost], robot.home)
     return result
-
-
-def _joined(robot: Mechanism, poses: Array) -> Array:
-    """(k,) whether the line from home to a pose (k, n) is within reach and passes no parallel singularity.
-
-    The pose itself may be on one.
-    """
-    way = poses - robot.home
-    if not robot.counts_turns:
-        turns = list(robot.rotations)
-        way[:, turns] -= 2 * np.pi * np.round(way[:, turns] / (2 * np.pi))
-    line = robot.home + np.linspace(0.0, 1.0, _ON_LINE, endpoint=False)[:, None, None] * way
-    (side,) = evaluate(robot.program(expressions.within_reach, _determinant), line, blank=True)[:1]
-    joined: Array = (side[..., 0] * _at_home(robot)[0] > 0.0).all(axis=0)
-    return joined
-
-
-def _determinant(_: Mechanism, model: Model) -> list[ca.SX]:
-    return [determinant(model.j_x_at_pose)]
 
 
 def _away(robot: Mechanism, poses: Array) -> Array:

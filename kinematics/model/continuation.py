@@ -2,11 +2,13 @@
 
 The joints go from those of the known pose to the ones that are asked for, and the pose follows without passing a
 singularity: so it stays in its assembly mode. A step counts only where Newton's method contracts at once; else it is
-halved. All poses are followed side by side, each with a step of its own.
+halved. All poses are followed side by side, each with a step of its own. Where the line of the joints meets a
+singularity, `forward_near` looks for a pose to which a line of the pose leads.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -14,12 +16,14 @@ import numpy as np
 from kinematics.arrays import Array, together
 from kinematics.evaluation import evaluate
 from kinematics.mathematics import determinant
+from kinematics.model.pose_line import joined
 
 if TYPE_CHECKING:
     from kinematics.model.mechanism import Mechanism
     from kinematics.model.programs import Build
     from kinematics.model.symbolic_model import Model
 
+ForwardModel = Callable[[Array, Array], Array]  # of joints (k, m) and known poses (k, n)
 # Sizes of a step of the pose: its angle [rad], or its length over the robot's size, whichever is larger.
 _LONGEST = 0.25
 _CORRECTED = 0.15  # the most that the first step of Newton's method may be, over the step that it corrects
@@ -32,6 +36,8 @@ _SHORTEST = 1e-6  # share of the way; where a shorter step is needed, a singular
 _MOST = 400  # steps of any pose
 _LAST = 0.02  # share of the way within which a way that gets stuck may end on a singularity
 _HALVINGS = 60
+_SINGULAR = 1e-6  # of the determinant where the way starts: below it rounding of a double root says nothing of the side
+_FITS = 40  # steps of the best fit that looks for another pose
 
 
 class State(NamedTuple):
@@ -65,9 +71,64 @@ def continued(robot: Mechanism, joints: Array, near: Array) -> Array:
     way[:, turns] -= 2 * np.pi * np.round(way[:, turns] / (2 * np.pi))
     done = _followed(robot, pose, first, way)
     stuck = np.flatnonzero((done < 1.0) & (done >= 1.0 - _LAST))
-    pose[stuck] = _at_double_root(robot, pose[stuck], first[stuck] + way[stuck])
+    side = state_at(robot, start.reshape(pose.shape)[stuck], first[stuck]).determinant
+    pose[stuck] = _at_double_root(robot, pose[stuck], first[stuck] + way[stuck], side)
     pose[done < 1.0 - _LAST] = np.nan
     return pose.reshape(*lead, pose.shape[-1])
+
+
+def forward_near(robot: Mechanism, joints: Array, near: Array) -> Array:
+    """As `continued`; where the line of the joints meets a singularity, the pose to which a line of the pose leads.
+
+    That pose has these joints too, and on the straight line to it from the known pose is no singularity: so it is on
+    the same side. A best fit from the known pose looks for it, and then the mechanism's own forward model.
+
+    Returns:
+        (..., n); NaN where none is found.
+    """
+    return _elsewhere(robot, joints, near, lambda q, _: robot.working_forward(q), reached(robot, joints, near))
+
+
+def reached(robot: Mechanism, joints: Array, near: Array) -> Array:
+    """As `forward_near`, without the mechanism's own forward model, which may be this."""
+
+    def fitted(joints: Array, pose: Array) -> Array:
+        for _ in range(_FITS):
+            pose = robot.moved(pose, _fitting(robot, state_at(robot, pose, joints)))
+        return pose
+
+    return _elsewhere(robot, joints, near, fitted, continued(robot, joints, near))
+
+
+def _elsewhere(robot: Mechanism, joints: Array, near: Array, model: ForwardModel, found: Array) -> Array:
+    """What was found (..., n); where that is NaN, the poses of a forward model to which a regular line leads."""
+    start, target = together(near, joints)
+    flat, n = found.reshape(-1, found.shape[-1]).copy(), found.shape[-1]
+    start, target = start.reshape(-1, n), target.reshape(-1, target.shape[-1])
+    lost = np.isnan(flat).any(axis=1) & np.isfinite(target).all(axis=1)
+    rows = np.flatnonzero(lost & np.isfinite(robot.inverse(start)).all(axis=1))
+    if rows.size:
+        start, target = start[rows], target[rows]
+        pose = model(target, start)
+        flat[rows] = np.where(_leads_to(robot, start, pose, target)[:, None], pose, np.nan)
+    return flat.reshape(found.shape)
+
+
+def _leads_to(robot: Mechanism, start: Array, pose: Array, joints: Array) -> Array:
+    """(k,) whether poses (k, n) have joints (k, m), and regular lines lead to them from other poses (k, n)."""
+    closes = np.abs(robot.closure_gap(pose, joints)).max(axis=-1) <= _CLOSED
+    before, after = state_at(robot, start, robot.inverse(start)), state_at(robot, pose, joints)
+    same = (before.determinant * after.determinant > 0.0) & (before.j_q * after.j_q > 0.0).all(axis=1)
+    leads: Array = closes & same & joined(robot, start, pose)
+    return leads
+
+
+def _fitting(robot: Mechanism, state: State) -> Array:
+    """(k, n) Gauss-Newton steps, none longer than the longest."""
+    inverse = np.linalg.pinv(np.nan_to_num(state.j_x * robot.pose_units()), rcond=1e-9)
+    twist = np.einsum("kij,kj->ki", inverse, np.nan_to_num(state.gap)) * robot.pose_units()
+    shorter: Array = twist * np.minimum(1.0, _LONGEST / np.maximum(_size(robot, twist), 1e-300))[:, None]
+    return shorter
 
 
 def _followed(robot: Mechanism, pose: Array, first: Array, way: Array) -> Array:
@@ -93,21 +154,19 @@ def _followed(robot: Mechanism, pose: Array, first: Array, way: Array) -> Array:
     return done
 
 
-def _at_double_root(robot: Mechanism, pose: Array, joints: Array) -> Array:
-    """(k, n) where a way that got stuck before its end does end, on a singularity; NaN where it does not.
+def _at_double_root(robot: Mechanism, pose: Array, joints: Array, side: Array) -> Array:
+    """(k, n) where a way that got stuck before its end does end, on a singularity or before it; NaN where beyond.
 
-    There Newton's method halves its error in each step.
+    There Newton's method halves its error in each step. It may pass the singularity, to another assembly mode: the
+    determinant must not have the other sign than where the way started, `side` (k,).
     """
     before = pose.copy()
     for _ in range(_HALVINGS):
-        state = state_at(robot, pose, joints)
-        inverse = np.linalg.pinv(np.nan_to_num(state.j_x * robot.pose_units()), rcond=1e-9)
-        twist = np.einsum("kij,kj->ki", inverse, np.nan_to_num(state.gap)) * robot.pose_units()
-        size = _size(robot, twist)
-        pose = robot.moved(pose, twist * np.minimum(1.0, _LONGEST / np.maximum(size, 1e-300))[:, None])
+        pose = robot.moved(pose, _fitting(robot, state_at(robot, pose, joints)))
     moved = _size(robot, pose - before)
     ends = (np.abs(robot.closure_gap(pose, joints)).max(axis=-1) <= 10 * _ROUNDING) & (moved <= _LONGEST)
-    return np.where(ends[:, None], pose, np.nan)
+    beyond = state_at(robot, pose, joints).determinant * side < -_SINGULAR * side**2
+    return np.where((ends & ~beyond)[:, None], pose, np.nan)
 
 
 def _closed(

@@ -16,7 +16,7 @@ from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.evaluation import BlockProgram, evaluate
 from kinematics.machine import GeometryRecord, InertiaRecord
 from kinematics.model import expressions
-from kinematics.model.continuation import continued
+from kinematics.model.continuation import forward_near
 from kinematics.model.definition import Definition
 from kinematics.model.indices import FviBounds, homogeneous
 from kinematics.model.margin import Margin, Measure
@@ -121,11 +121,12 @@ class Mechanism(Definition):
         Args:
             joints: of the working mode's limbs [m or rad].
             near: (n,) or (..., n) poses to continue from, each in the assembly mode that is wanted: the joints move
-                there on a straight line, without a singularity on the way. By default the assembly mode of `home`.
+                there on a straight line without a singularity on the way, or else the pose does. By default the
+                assembly mode of `home`.
         """
         if near is None:
             return self.working_forward(joints)
-        return continued(self, self._joints(joints), self._poses(near))
+        return forward_near(self, self._joints(joints), self._poses(near))
 
     def closure_residual(self, pose: Array, joints: Array) -> Array:
         """(..., n), (..., m) -> (..., m) the loop closure; zero when they belong together."""

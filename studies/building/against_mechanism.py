@@ -98,8 +98,10 @@ def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyP
         field = fields[name]
         pairs = bounds if field.shape and isinstance(bounds, tuple) else (bounds,)
         ends = [_numbers(pair) for pair in pairs]
-        if len(ends) != math.prod(field.shape) or any(
-            len(pair) != 2 or not field.allows(pair[0], pair[1]) for pair in ends
+        if (
+            len(ends) != math.prod(field.shape)
+            or any(len(pair) != 2 or not field.allows(pair[0], pair[1]) for pair in ends)
+            or all(pair[0] == pair[1] for pair in ends)
         ):
             yield ("optimise", "variables", name)
     for i, names in _rows(optimise, "sums", "fields"):
@@ -111,6 +113,8 @@ def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyP
     for i, margin in _rows(data, "requirement", "margin"):
         if margin not in mechanism.margins:
             yield ("requirement", i, "margin")
+        if margin == "reach" and _is_below_zero(data["requirement"][i].get("at_least")):
+            yield ("requirement", i, "at_least")
 
 
 def _counted(node: Key | Table, joints: int) -> Key | Table:
@@ -183,7 +187,11 @@ def _dimensions(field: GeometryField) -> Key:
 
 
 def _bounds(field: GeometryField) -> Key:
-    pairs = f", one list of {math.prod(field.shape)} such pairs, entry by entry" if field.shape else ""
+    pairs = (
+        f", one list of {math.prod(field.shape)} such pairs, entry by entry; low = high fixes an entry, but not all"
+        if field.shape
+        else ""
+    )
     return Key(f"low < high{_condition(field)}{pairs}", Dimension(field.dimension), place=_is_place(field))
 
 
@@ -208,6 +216,10 @@ def _rows(data: Mapping[str, Any], name: str, key: str) -> Iterator[tuple[int, A
     for i, row in enumerate(rows if isinstance(rows, tuple) else ()):
         if isinstance(row, dict) and key in row:
             yield i, row[key]
+
+
+def _is_below_zero(value: object) -> bool:
+    return isinstance(value, int | float) and value < 0
 
 
 def _numbers(value: object) -> list[float]:

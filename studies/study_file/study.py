@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from studies.study_file.machine_tables import InertiaTable, Ranges
 from studies.study_file.questions import digest_of, plain
-from studies.study_file.table import Interval, Name, Positive, StudyTable, gathered, table_of
+from studies.study_file.table import Entry, Interval, Name, Positive, StudyTable, gathered, table_of
 from studies.study_file.trajectory_tables import TrajectoryTable
 from studies.study_file.units import Dimension, Key, Table
 
@@ -89,8 +89,8 @@ class OptimiseTable(StudyTable):
     """Of the random starts."""
     starts: Annotated[int, Field(ge=1, le=10_000), Key("a whole number from 1 to 10000")] = 3
     """Geometries to start from, the study's own first."""
-    variables: Annotated[dict[str, Interval | tuple[Interval, ...]], Field(min_length=1), Table({})]
-    """What may change, by geometry field: (low, high), one for each entry of a tuple."""
+    variables: Annotated[dict[str, Interval | tuple[Entry, ...]], Field(min_length=1), Table({})]
+    """What may change, by field: (low, high), one for each entry of a tuple; an entry with low = high stays there."""
     sums: Annotated[tuple[SumTable, ...], table_of(SumTable, rows=True)] = ()
     """Limits of sums of lengths."""
 
@@ -100,7 +100,7 @@ class RequirementTable(StudyTable):
 
     margin: Annotated[str, Key("one of")]
     """What is required."""
-    at_least: Annotated[float, Key("a finite number")]
+    at_least: Annotated[float, Key("a finite number, of reach 0 or more")]
     """At every pose of the region and on the cycle."""
 
 

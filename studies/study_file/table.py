@@ -13,8 +13,15 @@ def _rising(pair: tuple[float, float]) -> tuple[float, float]:
     return pair
 
 
+def _not_falling(pair: tuple[float, float]) -> tuple[float, float]:
+    if pair[0] > pair[1]:
+        raise ValueError("low must not be above high")
+    return pair
+
+
 Positive = Annotated[float, Field(gt=0)]
 Interval = Annotated[tuple[float, float], AfterValidator(_rising)]
+Entry = Annotated[tuple[float, float], AfterValidator(_not_falling)]
 PerJoint = Positive | Annotated[tuple[Positive, ...], Field(min_length=1)]
 Name = Annotated[str, Field(min_length=1)]
 

@@ -11,7 +11,9 @@ from trajectory.motions.motion import PoseMotion
 from trajectory.paths import PathBox, located, throughout
 
 _ROUNDING = 1e-9  # of the largest value, or of an interval
-_SLACK = 1e-12  # relative and absolute: far more than what evaluation in double arithmetic is off by
+_SLACK = (
+    1e-12  # relative, to a value and to the largest one: far more than what evaluation in double arithmetic is off by
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,6 +134,8 @@ class InTime:
         """As `Path.enclose`: from the middle, where the jerk is known, one order after the other."""
         pose, velocity, acceleration, jerk = self.spline.at(0.5 * low + 0.5 * high)
         half = ((high - low) * (0.5 + _ROUNDING))[:, None]
-        rate = half * (np.abs(acceleration) + half * np.abs(jerk)) + _SLACK * (1.0 + np.abs(velocity))
-        away = half * (np.abs(velocity) + rate) + _SLACK * (1.0 + np.abs(pose))
+        rate = half * (np.abs(acceleration) + half * np.abs(jerk)) + _SLACK * (
+            np.abs(self.spline.velocity).max() + np.abs(velocity)
+        )
+        away = half * (np.abs(velocity) + rate) + _SLACK * (np.abs(self.spline.pose).max() + np.abs(pose))
         return PathBox(pose - away, pose + away, velocity - rate, velocity + rate)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -11,6 +12,7 @@ from kinematics import Array, InvalidShape, InvalidValue
 from trajectory.paths import located, throughout
 
 _ROUNDING = 1e-9  # of the length or the speed
+_ULPS = 2.0  # of the duration: both knots of an interval are rounded
 _SAME = 1e-13  # of the length: closer knots are one
 _BISECTIONS = 60  # down to rounding
 
@@ -88,6 +90,22 @@ class TimeLaw:
         times = np.concatenate([[0.0], np.cumsum(2 * steps / sums)])
         none = np.zeros_like(steps)
         return cls(name, times, position, speed, np.diff(speed) * sums / (2 * steps), none, none)
+
+    @classmethod
+    def joined(cls, laws: Sequence[TimeLaw]) -> TimeLaw:
+        """One after another, each from where the one before it ends and at its speed; the first law's name."""
+        times = np.cumsum([0.0, *(law.duration for law in laws)])
+        ways = np.cumsum([laws[0].position[0], *(np.ptp(law.position) for law in laws)])
+        after = [slice(0 if k == 0 else 1, None) for k in range(len(laws))]
+        return cls(
+            laws[0].name,
+            np.concatenate([t + law.times[k] for t, law, k in zip(times[:-1], laws, after, strict=True)]),
+            np.concatenate(
+                [s + law.position[k] - law.position[0] for s, law, k in zip(ways[:-1], laws, after, strict=True)]
+            ),
+            np.concatenate([law.speed[k] for law, k in zip(laws, after, strict=True)]),
+            *(np.concatenate([getattr(law, name) for law in laws]) for name in ("acceleration", "jerk", "snap")),
+        )
 
     @property
     def duration(self) -> float:
@@ -170,11 +188,12 @@ class TimeLaw:
     def _require_joined(self) -> None:
         """Each interval must end where the next one starts."""
         _, ends = self.within(np.array([1.0]))
+        late = _ULPS * np.finfo(float).eps * self.duration  # by which a knot's time may be rounded
         gaps = (
-            ("position", np.abs(ends.position[:, 0] - self.position[1:]), np.ptp(self.position)),
-            ("speed", np.abs(ends.speed[:, 0] - self.speed[1:]), self.speed.max()),
+            ("position", np.abs(ends.position[:, 0] - self.position[1:]), np.ptp(self.position), self.speed[1:]),
+            ("speed", np.abs(ends.speed[:, 0] - self.speed[1:]), self.speed.max(), np.abs(ends.acceleration[:, 0])),
         )
-        for field, gap, scale in gaps:
-            if not (gap <= _ROUNDING * scale).all():
+        for field, gap, scale, steepness in gaps:
+            if not (gap <= _ROUNDING * scale + late * steepness).all():
                 k = int(np.argmax(gap))
                 raise InvalidValue(f"TimeLaw {field}", f"a gap of {gap[k]:.3g} at knot {k + 1}", "intervals that join")

@@ -19,11 +19,12 @@ from kinematics import (
     Mechanism,
     actuator_motion,
     checked,
+    continued,
     from_actuators,
     inverse_dynamics,
     to_actuators,
 )
-from trajectory.errors import LimitsExceeded, MoveRefused
+from trajectory.errors import JointPeak, LimitsExceeded, MoveRefused
 from trajectory.limits import Limits
 from trajectory.moves.ruckig_plan import AxisLimits, Profile, fastest_move, fastest_stop
 from trajectory.setpoints import Setpoints, robot_header
@@ -157,16 +158,16 @@ def _move(
     asked: dict[str, Any],
 ) -> Move:
     """Check the limits and sample; `asked` goes into the header."""
-    found = _peaks(way, limits)
-    over = {name: value for name, value in found.items() if not value <= 1.0 + _ROUNDING}
+    found = _peaks(robot, way, limits)
+    over = {name: peak for name, peak in found.items() if not peak.ratio <= 1.0 + _ROUNDING}
     if over:
-        raise LimitsExceeded(over, 1.0)
+        raise LimitsExceeded.of_peaks(over)
     table = np.concatenate([way.times[:, None], *way[1:]], axis=1)[::PARTS]
     count = len(table) - 1
     header = robot_header(robot, limits) | {"laws": ["ruckig"], "payload [kg]": payload} | asked
     header |= {"period [s]": float(period), "periods": [count]}
     points = Setpoints.of_table(table, robot.pose_names, robot.actuator_names, joint_units, header)
-    return Move(points, count * period, found)
+    return Move(points, count * period, {name: peak.ratio for name, peak in found.items()})
 
 
 def _of_joints(robot: Mechanism, profile: Profile, near: Array, payload: float) -> _Way:
@@ -201,13 +202,13 @@ def _of_joints(robot: Mechanism, profile: Profile, near: Array, payload: float) 
 def _followed(robot: Mechanism, joints: Array, near: Array) -> Array:
     """(k, n) poses of joints (k, m), from one near the first on: each found from one less than half a turn away."""
     turns = [unit == "rad" for unit in robot.joint_units]
-    first = robot.forward(joints[0], near=near)
+    first = continued(robot, joints[0], near)
     parts = (np.abs(joints - joints[0])[:, turns].max(axis=1, initial=0.0) // _SWING).astype(int)
     pose, last = np.empty((len(joints), len(robot.pose_names))), first
     for part in range(parts.max() + 1):
         rows = np.flatnonzero(parts == part)
         if rows.size:
-            pose[rows] = robot.forward(joints[rows], near=last)
+            pose[rows] = continued(robot, joints[rows], last)
             last = pose[rows[-1]]
     return pose
 
@@ -242,11 +243,11 @@ def _of_pose(
         torque = inverse_dynamics(robot, payload, pose, velocity, acceleration)
         way = _Way(profile.times, pose, joints.position, joints.first, joints.second, torque)
         _require_in_ranges(robot, way, limits)
-        found = _peaks(way, limits)
-        if max(found.values()) <= 1.0 + _ROUNDING:
+        found = _peaks(robot, way, limits)
+        if max(peak.ratio for peak in found.values()) <= 1.0 + _ROUNDING:
             return way
-        slower *= max(_SLOWER, *(ratio ** (1 / _POWERS[name]) for name, ratio in found.items()))
-    raise LimitsExceeded({name: value for name, value in found.items() if value > 1.0}, 1.0)
+        slower *= max(_SLOWER, *(peak.ratio ** (1 / _POWERS[name]) for name, peak in found.items()))
+    raise LimitsExceeded.of_peaks({name: peak for name, peak in found.items() if peak.ratio > 1.0})
 
 
 def _require_regular(robot: Mechanism, line: Array) -> None:
@@ -324,8 +325,11 @@ def _axis_limits(limits: Limits, count: int) -> AxisLimits:
     return AxisLimits(needed("speed"), needed("acceleration"), needed("jerk"))
 
 
-def _peaks(way: _Way, limits: Limits) -> dict[str, float]:
-    """Each limited quantity's peak over its limit; the jerk is the mean over each step, and so never above its peak."""
+def _peaks(robot: Mechanism, way: _Way, limits: Limits) -> dict[str, JointPeak]:
+    """Each limited quantity where it is largest over its limit.
+
+    The jerk is the mean over each step, and so never above its peak.
+    """
     step = way.times[1] - way.times[0]
     quantities = {
         "speed": way.speed,
@@ -335,8 +339,14 @@ def _peaks(way: _Way, limits: Limits) -> dict[str, float]:
     if limits.torque is not None:
         quantities["torque"] = way.torque
     count = way.position.shape[1]
-    found = {name: float((np.abs(v) / limits.of_joints(name, count)).max()) for name, v in quantities.items()}
+    most = {name: np.asarray(limits.of_joints(name, count)) for name in quantities}
     stall, fastest = limits.of_joints("stall_torque", count), limits.of_joints("no_load_speed", count)
     if stall is not None and fastest is not None:
-        found["torque at speed"] = float((np.abs(way.torque) / stall + np.abs(way.speed) / fastest).max())
+        quantities["torque at speed"] = np.abs(way.torque) / stall + np.abs(way.speed) / fastest
+        most["torque at speed"] = np.ones(count)
+    found = {}
+    for name, values in quantities.items():
+        row, joint = np.unravel_index(int((np.abs(values) / most[name]).argmax()), values.shape)
+        value, limit = float(values[row, joint]), float(most[name][joint])
+        found[name] = JointPeak(robot.actuator_names[joint], float(way.times[row]), value, limit)
     return found

@@ -2,7 +2,8 @@
 
 A point is no corner where the path goes straight on: waypoints in a row without a blend are one leg where each step
 between them is within `STRAIGHT` of the leg's own direction. Such a leg misses a waypoint by no more than that share of
-its steps. Any other waypoint without a blend is a stop.
+its steps. Any other waypoint without a blend is a stop. So is one whose corner would be no longer than `UNTOLD` of the
+path: arc lengths are rounded too much to tell what it does inside.
 
 Where the tool point stands still from one waypoint to the next, the tool turns in place, from stop to stop. Such a leg
 is as long as the angle by which it turns times the path's longest leg; where the path has no other leg, 1 m a radian.
@@ -22,6 +23,7 @@ from trajectory.errors import InvalidPath
 from trajectory.paths.corner import corner_length
 
 STRAIGHT = 1e-5  # rad: from a leg's direction to that of a step of it, and from a reversal to a corner that has a blend
+UNTOLD = 1e-9  # of the path's legs: a shorter corner is a stop
 _ROUNDING = 1e-12  # relative
 _SAME = 1e-12  # of the largest coordinate: no further apart are two points one
 
@@ -60,6 +62,7 @@ def laid_out(points: Array, blends: Sequence[float], in_place: Array, turns: Arr
     """
     sizes = np.linalg.norm(np.diff(points, axis=0), axis=1)
     _require_room(points, sizes, in_place, blends, turns)
+    blends = _told_blends(points, blends, in_place)
     legs = _straight_runs(points, in_place, blends)
     measure = float(sizes.max()) if not in_place.all() else 1.0
     rows: list[tuple[float, float, Array, Array, Array]] = []
@@ -82,8 +85,6 @@ def laid_out(points: Array, blends: Sequence[float], in_place: Array, turns: Arr
             continue
         following = points[legs[k + 1][1]] - points[last]
         alpha, across = _turn(unit, following / np.linalg.norm(following))
-        if alpha > math.pi - STRAIGHT and blends[last] > 0.0:
-            raise InvalidPath(last + 1, "blend", blends[last], "0 m: where a path reverses it has to stop")
         length = corner_length(alpha, blends[last])
         at[last] += length / 2
         if length > 0.0:
@@ -95,6 +96,25 @@ def laid_out(points: Array, blends: Sequence[float], in_place: Array, turns: Arr
     edges = np.concatenate([[0.0], np.cumsum(lengths)])
     at[-1] = edges[-1]
     return Layout(edges, lengths, alphas, starts, along, across_, at, tuple(stops))
+
+
+def _told_blends(points: Array, blends: Sequence[float], in_place: Array) -> list[float]:
+    """The blends, 0 where a corner would be too short to be told.
+
+    Raises:
+        InvalidPath: a blend where the path reverses.
+    """
+    legs, told = _straight_runs(points, in_place, blends), list(blends)
+    least = UNTOLD * float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+    for (start, corner), (_, stop) in pairwise(legs):
+        if told[corner] > 0.0:
+            before, after = points[corner] - points[start], points[stop] - points[corner]
+            alpha, _ = _turn(before / np.linalg.norm(before), after / np.linalg.norm(after))
+            if alpha > math.pi - STRAIGHT:
+                raise InvalidPath(corner + 1, "blend", told[corner], "0 m: where a path reverses it has to stop")
+            if corner_length(alpha, told[corner]) <= least:
+                told[corner] = 0.0
+    return told
 
 
 def _straight_runs(points: Array, in_place: Array, blends: Sequence[float]) -> list[tuple[int, int]]:

@@ -39,6 +39,7 @@ class Slack(NamedTuple):
     mean_torque: Array
 
 
+@np.errstate(over="ignore")  # a bound beyond all numbers proves nothing, and the part is cut
 def slack(robot: Mechanism, timed: TimedMotion, payload: float, low: Array, high: Array) -> Slack:
     """How far the motion may be over each part from what it is in its middle.
 

@@ -66,6 +66,7 @@ def uses(robot: Mechanism, motion: Motion, limits: Limits, slack: Motion | None 
     return found
 
 
+@np.errstate(over="ignore")  # as of the bounds that are too wide
 def _against(value: Array, limit: Array | None) -> Use:
     if limit is None:
         return Use(value, None, None)

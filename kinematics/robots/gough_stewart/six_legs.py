@@ -15,7 +15,7 @@ import numpy as np
 from kinematics.arrays import Array, together
 from kinematics.machine import Bodies, Particle
 from kinematics.mathematics import angles, rotation, turn
-from kinematics.model import Mechanism, continued
+from kinematics.model import Mechanism, reached
 from kinematics.robots.gough_stewart.forward import ForwardSolution, solve_forward
 
 
@@ -82,7 +82,7 @@ class SixLegs(Mechanism):
 
     def working_forward(self, joints: Array) -> Array:
         """(..., 6) -> (..., 6): continued from home."""
-        return continued(self, self._joints(joints), self.home)
+        return reached(self, self._joints(joints), self.home)
 
     def newton(self, joints: Array, start: Array | None = None, iterations: int = 30) -> ForwardSolution:
         """Newton's method from a start near, [8.6.4.2]: where it converged, in how many steps and with which error.

@@ -5,8 +5,8 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 import pytest
-from design.claims import Statement, to_show
 
+from design.claims import Statement, to_show
 from kinematics import MECHANISMS, ClaimSymbols, Mechanism
 from kinematics.evaluation.block_interpreter import bulk, evaluate
 

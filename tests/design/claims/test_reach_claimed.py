@@ -53,14 +53,15 @@ def test_a_region_that_a_limb_cannot_reach_refutes_every_margin_and_boxes_never_
 ) -> None:
     region = _partly_beyond(robot, np.random.default_rng(8))
     assert region is not None
-    for at_least in (-1e3, 1e-9):
+    lowest = 0.0 if margin == "reach" else -1e3
+    for at_least in (lowest, 1e-9):
         found = certify(robot, region, margin, at_least=at_least, most_boxes=300)
         assert found.status == "refuted"
         assert found.counterexample is not None
         assert found.within_reach == bool(robot.margin("reach", found.counterexample) >= 0.0)
         assert at_least > 0.0 or not found.within_reach
     monkeypatch.setattr("design.certificates.refutation.Refuter.refutation", lambda *_: None)
-    assert certify(robot, region, margin, at_least=-1e3, most_boxes=300).status == "undecided"
+    assert certify(robot, region, margin, at_least=lowest, most_boxes=300).status == "undecided"
 
 
 def test_arms_too_short_for_the_region_refute_the_determinant_of_the_other_two() -> None:
@@ -78,8 +79,14 @@ def test_arms_too_short_for_the_region_refute_the_determinant_of_the_other_two()
 
 def test_reach_itself_is_never_claimed_of_a_pose_out_of_reach() -> None:
     beyond = Box(x=(1.3, 1.4), y=0.0, z=-0.7, theta=0.0)
-    found = certify(Heli4(), beyond, "reach", at_least=-10.0)
+    found = certify(Heli4(), beyond, "reach", at_least=0.0)
     assert (found.status, found.within_reach) == ("refuted", False)
+
+
+def test_a_bound_of_reach_below_0_would_claim_nothing_more_and_is_refused() -> None:
+    region = Box(x=0.0, y=0.0, z=-0.7, theta=0.0)
+    with pytest.raises(InvalidValue, match=r"at_least of reach: found -0\.01; expected 0 m or more"):
+        certify(Heli4(), region, "reach", at_least=-0.01)
 
 
 def test_joints_without_limits_have_all_the_room_there_is_where_the_limbs_reach() -> None:

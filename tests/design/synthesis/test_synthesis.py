@@ -9,11 +9,22 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from design import Bounds, Box, Cylinder, Region, Requirement, SumLimit, SynthesisFailed, certify, worst_poses
+from design import (
+    Bounds,
+    Box,
+    Cylinder,
+    Region,
+    Requirement,
+    SumLimit,
+    SynthesisFailed,
+    WorstPoses,
+    certify,
+    worst_poses,
+)
 from design.synthesis.exchange import rounded
-from design.synthesis.nlp import Problem, active_sets, solve
-from design.synthesis.synthesis import synthesise
-from kinematics import Delta, Heli4, Hexa, InvalidValue, Peppermill, Redundant3T1R
+from design.synthesis.nlp import NlpSolution, Problem, active_sets, solve
+from design.synthesis.synthesis import _offenders, synthesise
+from kinematics import Delta, GoughStewart, Heli4, Hexa, InvalidValue, Peppermill, Redundant3T1R
 
 REGION = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-math.pi, math.pi))
 ROBOT = Heli4()
@@ -258,6 +269,55 @@ def test_the_best_seen_meets_its_requirements_where_any_geometry_does() -> None:
     assert best is not None
     assert best.shortfall <= 0.0
     assert best.objective >= worst_poses(ROBOT, REGION, "fvi", about=ABOUT).value
+
+
+def test_an_answer_that_breaks_a_requirement_is_drawn_back_to_where_it_holds() -> None:
+    """With a spare below 0 the NLP aims beyond the requirement, so that its answer is sure to break it."""
+    asked = problem(("arm_length", 0.3, 0.42), requirements=(Requirement("J_q", 0.42),), spare=-0.02)
+    with pytest.raises(SynthesisFailed, match="did not settle") as caught:
+        synthesise(asked, REGION, starts=1, about=ABOUT, max_rounds=1)
+    best = caught.value.best
+    assert best is not None
+    assert best.shortfall <= 0.0
+    assert best.objective > worst_poses(ROBOT, REGION, "fvi", about=ABOUT).value * 1.001
+
+
+def test_an_entry_with_equal_bounds_stays_there_while_the_others_move() -> None:
+    """It need not be the prototype's value; two limbs turned alike keep the worst index, and no bound is told."""
+    first, _, *others = ROBOT.geometry.azimuths
+    bounds = [(first, first), (math.pi - 0.1, math.pi + 0.2), *((a + 0.01, a + 0.01) for a in others)]
+    asked = replace(problem(), variables=tuple(Bounds("azimuths", k, *pair) for k, pair in enumerate(bounds)))
+    found = synthesise(asked, REGION, starts=2, about=ABOUT)
+    assert found.robot.geometry.azimuths[0] == first
+    assert found.robot.geometry.azimuths[2:] == pytest.approx([a + 0.01 for a in others], rel=1e-7)
+    assert all("[1]" in line for line in active_sets(asked, found.robot, found.after))
+
+
+def test_eighteen_free_coordinates_of_a_hexapod_have_an_optimum() -> None:
+    robot = GoughStewart()
+    points = np.ravel(robot.geometry.platform_points)
+    asked = replace(
+        problem(),
+        robot=robot,
+        variables=tuple(Bounds("platform_points", k, v - 0.05, v + 0.05) for k, v in enumerate(points)),
+        requirements=(Requirement("joint_travel", 0.02),),
+        fvi_bounds=robot.fvi_bounds,
+        characteristic_length=robot.characteristic_length,
+    )
+    region = Box(x=(-0.1, 0.1), y=0.0, z=(0.55, 0.75), roll=(-0.2, 0.2), pitch=0.0, yaw=0.0)
+    found = synthesise(asked, region, starts=1, about=ABOUT)
+    assert found.after["fvi"].value > 1.05 * found.before["fvi"].value
+
+
+def test_lowest_poses_that_keep_the_promise_are_not_solved_on_again() -> None:
+    """A hexapod's worst index has hundreds of lowest poses within the tolerance; they once used up the time."""
+    asked = problem(requirements=(Requirement("J_q", 0.4),))
+    promised = NlpSolution(np.empty(0), 1.0, "Solve_Succeeded", True, {}, 1, 0.0)
+    poses = np.arange(12.0).reshape(3, 4)
+    worst = WorstPoses(np.array([0.5, 1.0 - 2e-5, 1.0 - 1e-6]), poses, 3, True, 1.0)
+    sizes = {"fvi": 1.0, "J_q": 1.0}
+    assert np.array_equal(_offenders(asked, promised, sizes, 1e-5, "fvi", worst), poses[:2])
+    assert not len(_offenders(asked, promised, sizes, 1e-5, "J_q", worst))
 
 
 def test_an_optimum_of_a_margin_that_holds_two_arms_only_reaches_everywhere() -> None:

@@ -61,6 +61,14 @@ def test_the_end_of_a_way_is_where_it_is_furthest_out() -> None:
     assert found.room == pytest.approx(-0.1, abs=1e-12)
 
 
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_a_way_of_any_size_may_leave_by_a_millionth_of_the_region_and_no_more(size: float) -> None:
+    way = RoundedPath(NAMES, ((-0.1 * size, 0.0, 0.0, 0.0), (0.1 * size, 0.0, 0.0, 0.0)), ())
+    for short, inside in ((0.5e-7, True), (2e-7, False)):
+        region = Box(x=(-0.1 * size, (0.1 - short) * size), y=0.0, z=0.0, theta=0.0)
+        assert (leaving(region, way, NAMES) is None) == inside
+
+
 def test_a_motion_that_leaves_the_region_between_its_knots_only_is_found() -> None:
     """x = t (1 - t) (1 - 2 t) is 0 at every half, and at most 1 / (6 sqrt 3)."""
     peak, none = 1.0 / (6.0 * math.sqrt(3.0)), np.zeros((2, 4))

@@ -217,6 +217,7 @@ def test_certify_exits_1_with_margin_and_pose(
         (("--margin", "J_X"), f"--margin: found J_X; expected one of {', '.join(Heli4.margins)}"),
         (("--at-least", "1"), "--at-least: found 1.0; expected --margin"),
         (("--margin", "fvi", "--at-least", "nan"), "--at-least: found nan; expected a finite number"),
+        (("--margin", "reach", "--at-least", "-0.1"), "--at-least: found -0.1; expected 0 m or more for reach"),
     ],
 )
 def test_a_wrong_question_exits_2(tmp_path: Path, arguments: tuple[str, ...], says: str) -> None:

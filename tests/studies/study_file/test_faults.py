@@ -72,6 +72,18 @@ FAULTS = {
     "variable": ("pitch_mm", "pich_mm", "optimise.variables.pich_mm", "did you mean pitch_mm?"),
     "bounds": ("[20, 120]", "[120, 20]", "optimise.variables.pitch_mm", "expected low < high, 0 left out (mm"),
     "equal bounds": ("[20, 120]", "[20, 20]", "optimise.variables.pitch_mm", "expected low < high, 0 left out (mm"),
+    "less than reach": (
+        '"J_q"\nat_least = 0.3',
+        '"reach"\nat_least = -0.3',
+        "requirement.at_least",
+        "of reach 0 or more",
+    ),
+    "no entry moves": (
+        "pitch_mm = [20, 120]",
+        "azimuths_deg = [[0, 0], [180, 180], [90, 90], [270, 270]]",
+        "optimise.variables.azimuths_deg",
+        "low = high fixes an entry, but not all",
+    ),
     "length bounds": ("[0.25, 0.50]", "[0, 0.5]", "optimise.variables.arm_length", "low < high, above 0 (m)"),
     "bounds around no pitch": ("[20, 120]", "[-20, 120]", "optimise.variables.pitch_mm", "0 left out"),
     "no pitch": ("arm_length_mm = 351", "pitch = 0", "geometry.pitch", "a finite number, 0 left out"),
@@ -275,3 +287,10 @@ def test_a_screw_may_turn_further_than_once(write: Write, minimal_text: str, mon
         load_study(path)
     monkeypatch.setattr(kinematics.MECHANISMS["Fake"], "counts_turns", True)
     assert load_study(path).region.coordinates["theta"] == pytest.approx((-2 * math.pi, 2 * math.pi))
+
+
+def test_an_entry_of_a_list_of_bounds_may_be_fixed(write: Write, study_text: str) -> None:
+    bounds = "azimuths_deg = [[0, 0], [170, 190], [90, 90], [270, 270]]"
+    found = load_study(write(study_text.replace("pitch_mm = [20, 120]", bounds))).optimise
+    assert found is not None
+    assert found.variables["azimuths"][2] == (math.pi / 2, math.pi / 2)  # type: ignore[index]

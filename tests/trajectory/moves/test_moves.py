@@ -112,8 +112,15 @@ def test_its_set_points_are_written_and_read(tmp_path_factory: pytest.TempPathFa
 
 
 def test_a_torque_beyond_its_limit_is_refused(robot: Heli4, target: np.ndarray) -> None:
-    with pytest.raises(LimitsExceeded, match="torque"):
+    """By joint, time, value and limit."""
+    with pytest.raises(LimitsExceeded, match=r"torque at .* \(q\d at t = .* s: .*, limit 127\)") as caught:
         plan_move(robot, HOME, target, replace(LIMITS, acceleration=450.0), 1.0, 1e-3, UNITS)
+    peak = caught.value.peaks["torque"]
+    assert abs(peak.value) > peak.limit == 127.0
+    assert peak.ratio == caught.value.failures["torque"]
+    free = plan_move(robot, HOME, target, replace(LIMITS, acceleration=450.0, torque=None), 1.0, 1e-3, UNITS)
+    joint = robot.actuator_names.index(peak.joint)
+    assert abs(free.setpoints.torque[round(peak.time / 1e-3), joint] - peak.value) < 0.05 * peak.limit
 
 
 @pytest.mark.parametrize("field", ["acceleration", "jerk"])

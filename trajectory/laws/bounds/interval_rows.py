@@ -117,7 +117,7 @@ def _path_boxes(path: Path, edges: Array) -> tuple[list[Array], Array, Array]:
     derivatives = path.evaluate(middle, 3)
     steepest, bounds = path.steepest(middle, 4), list[tuple[Array, Array]]()
     for value in derivatives[::-1]:
-        away = half * steepest * (1.0 + _SLACK) + _SLACK * (1.0 + np.abs(value))
+        away = half * steepest * (1.0 + _SLACK) + _SLACK * (np.abs(value).max() + np.abs(value))
         bounds.insert(0, (value - away, value + away))
         steepest = np.abs(value) + away
     low, high = (np.hstack([bound[side] for bound in bounds]) for side in (0, 1))

@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from kinematics import Array, InvalidValue, Mechanism
+from trajectory.errors import PathBeyondLimit, TimingFailed
 from trajectory.laws.at_rest import require_possible
 from trajectory.laws.jerk.limit_rows import PARTS, smoothstep
 from trajectory.laws.jerk.motion import law_in_time
 from trajectory.laws.jerk.refinement import Answer, Problem, fastest
 from trajectory.laws.jerk.refusal import refuse
 from trajectory.limits import Limits
-from trajectory.motions import TimedPath
-from trajectory.paths import Path, require_poses_of, require_smooth
+from trajectory.motions import TimedPath, TimeLaw
+from trajectory.paths import Part, Path, require_poses_of, require_smooth
 
 INTERVALS = 200
 LEAST_INTERVALS = 20
+# Of the path: pieces in whose middle a motion may rest. With the first ones it is always tried: their scales are so far
+# from the path's that a search may end with a slower motion.
+_SHORT = (1e-5, 1e-3)
 _CHECKED = 2000  # intervals of arc length between which the joints' positions are looked at
 
 
 def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = INTERVALS) -> TimedPath:
     """The fastest law from rest to rest, with zero s'' at both ends.
+
+    It may rest in very short corners too, where that is found to be faster or nothing else is found.
 
     Args:
         robot: any mechanism with the path's kind of pose.
@@ -44,12 +52,53 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     require_smooth(path)
     require_possible(robot, path, limits, payload, np.linspace(0.0, path.length, _CHECKED + 1))
     problem = Problem(robot, path, limits, payload)
+    failed: TimingFailed | None = None
+    laws = []
+    try:
+        laws.append(_passing(problem, intervals))
+    except TimingFailed as error:
+        failed = error
+    for share in _SHORT:
+        if (share == _SHORT[0] or not laws) and (law := _resting(problem, intervals, share)) is not None:
+            laws.append(law)
+    if failed is not None and not laws:
+        raise failed
+    return TimedPath(path, min(laws, key=lambda law: law.duration))
+
+
+def _passing(problem: Problem, intervals: int) -> TimeLaw:
+    """The law that rests at both ends alone."""
     answer = fastest(problem, intervals)
-    slower = max(1.0, answer.use) ** 0.5  # by the little that it is over a limit
-    law = law_in_time(answer.motion, path.length, answer.unit * slower, _per_jerk(answer, path.length))
+    length = problem.path.length
+    law = law_in_time(answer.motion, length, answer.unit, _per_jerk(answer, length))
     if law is None:
         refuse(*problem, answer.sizes.size)
-    return TimedPath(path, law)
+    return law
+
+
+def _resting(problem: Problem, intervals: int, share: float) -> TimeLaw | None:
+    """The law that rests in the middle of each run of pieces that are so short a share of the path too.
+
+    There a rest costs next to nothing, and the scales of what is left are closer. None where there are no such pieces,
+    or no such law.
+    """
+    path = problem.path
+    rests = _middles(np.array(path.knots), share * path.length)
+    if not rests:
+        return None
+    parts = [Part(path, a, b) for a, b in pairwise((0.0, *rests, path.length))]
+    try:
+        return TimeLaw.joined([_passing(problem._replace(path=part), intervals) for part in parts])
+    except (TimingFailed, PathBeyondLimit):
+        return None
+
+
+def _middles(knots: Array, short: float) -> list[float]:
+    """Of the runs of pieces that are so short, but at both ends."""
+    is_short = np.diff(knots) <= short
+    inside = np.concatenate([[False], is_short[1:-1], [False]]) if is_short.size > 2 else np.zeros(1, dtype=bool)
+    first, last = (np.flatnonzero(np.diff(inside.astype(int)) == step) + 1 for step in (1, -1))
+    return [float(knots[a] + knots[b]) / 2 for a, b in zip(first, last, strict=True)]
 
 
 def _per_jerk(answer: Answer, length: float) -> Array:

@@ -12,7 +12,7 @@ from trajectory.paths import Path
 LEAST_IN_PIECE = 6  # intervals between two of the path's knots: so many follow a corner's coefficients
 _BY_TIME = 0.8  # share of the knots that stand at equal times; the others at equal u
 _BY_EXCESS = 0.2  # share of all the knots that stand where rows are exceeded between the stations
-_SHORTEST = 1e-9  # of u: closer knots of the path are one
+_SHORTEST = 1e-10  # of u: closer knots of the path are one
 
 
 def piece_edges(path: Path) -> Array:

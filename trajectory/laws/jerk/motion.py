@@ -11,7 +11,8 @@ from trajectory.laws.jerk.limit_rows import smoothstep
 from trajectory.motions import TimeLaw
 
 _FAITHFUL = 3e-4  # of a limit of jerk: how far the law's may be from the motion's
-_HALVINGS = 12
+_HALVINGS = 40
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # exact for the slope of S5, of degree 4
 _STEEPEST = 1.35  # w times an interval's size over x; from 1.5 on a cubic may pass below 0
 
 
@@ -109,14 +110,20 @@ def _quartics(knots: Array, motion: SquaredRate, length: float, unit: float) -> 
     s, v, a = length * share, length * first * np.sqrt(x), length * (second * x + first * w)
     s[-1] = length
     v[[0, -1]] = a[[0, -1]] = 0.0
-    to_end, _, _, _ = smoothstep(1.0 - knots)  # near the end the arc length itself is rounded too much
-    step = length * np.where(knots[1:] < 0.5, np.diff(share), -np.diff(to_end))
+    step = length * _shares(knots)
     mean, bend = (v[:-1] + v[1:]) / 2, (a[:-1] - a[1:]) / 12
     with np.errstate(invalid="ignore"):
         h = 2.0 * step / (mean + np.sqrt(mean**2 + 4.0 * bend * step))
     by_speed, by_acceleration = (np.diff(v) - a[:-1] * h) / h**2, np.diff(a) / h
     jerks = np.stack([6.0 * by_speed - 2.0 * by_acceleration, 4.0 * by_acceleration - 6.0 * by_speed])
     return _Quartics(s, v, a, h, jerks)
+
+
+def _shares(knots: Array) -> Array:
+    """(n,) of the arc length, one for each interval: differences of the whole, which is rounded, tell no small ones."""
+    sizes = np.diff(knots)
+    inside = knots[:-1, None] + sizes[:, None] * (_NODES + 1.0) / 2.0
+    return sizes / 2.0 * (smoothstep(inside)[1] @ _WEIGHTS)
 
 
 def _third_derivatives(knots: Array, motion: SquaredRate, length: float, unit: float) -> Array:

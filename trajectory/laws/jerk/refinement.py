@@ -2,10 +2,12 @@
 
 A search keeps the rows at its stations. What its answer exceeds between them tightens the rows around it, and the
 search goes on; how much time that costs says whether the knots are close enough, and if not there are twice as many.
+Each answer is slowed down until it keeps the rows of the path itself between the stations; the fastest one is taken.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +31,9 @@ _MOST = 16_000  # intervals, where a motion was found on fewer
 _ROUNDS = 4  # of tightening
 _NEARLY = 1e-3  # over a row: more is no answer
 _KEPT = 1e-4  # over a row that is left to the end
+_BETWEEN = 4  # parts of an interval, at whose own stations an answer is measured
+_LEAST_RATE = 0.1  # to which an answer is slowed down
+_BISECTIONS = 20
 _ROUGHLY, _CLOSELY = 1e-2, 1e-5  # of the time: how far from the least one a search may end
 _FAR, _NEAR, _SAME = 1e-4, 1e-5, 1e-6  # barrier of a search that starts from a slow, a good, its own motion
 _STEPS = 400
@@ -39,7 +44,6 @@ _HELD = 1.1  # by what more than needed rows are loosened
 _INSIDE = 1e-2  # barrier where a motion far from the rows is sought
 _ROOM = 5e-4  # of every row that is left where the drives cannot hold the weight: there no stretch mends a motion
 _PRICE = 1e3  # of what loosens the forces, in units of the slow motion's time
-_FASTEST = 1e6  # of x in units of the slow motion's, where nothing bounds it
 _SLOWER = 0.98  # of the rate that just keeps every row
 
 
@@ -53,7 +57,7 @@ class Problem(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """A motion, its rows, its unit of time [s], and the most that it uses of a row between the stations.
+    """A motion, its rows, its unit of time [s], and about the most that it uses of a row between the stations.
 
     `tolerance` is how far its time may be above the least one on its knots, relative.
     """
@@ -92,24 +96,62 @@ def fastest(problem: Problem, intervals: int) -> Answer:
     """
     edges = piece_edges(problem.path)
     asked = max(intervals, _IN_PIECE * (edges.size - 1))
-    found, best = _first(problem, first_mesh(edges, asked // _COARSE)), None
+    found, best, settled = _first(problem, first_mesh(edges, asked // _COARSE)), None, False
     for _ in range(_DOUBLINGS + 1):
         finer = _on_finer_knots(problem, edges, found, asked)
         if finer is None:
             break
         before, found, asked = found, finer, 2 * asked
-        answer = _tightened(found.answer, found.duals) if found.converged else found.answer
-        if found.converged and answer.use <= 1.0 + _NEARLY:
+        if not found.converged:
+            if settled:
+                break  # so fine that the search fails: the knots before were fine enough
+            continue
+        answer = _tightened(found.answer, found.duals)
+        slowed = _slowed(problem, answer)
+        if slowed is None:
+            continue
+        if best is None or slowed.time < best.time:
+            best = slowed
+        if slowed.time <= (1.0 + _NEARLY) * answer.time:
+            settled = True
             left = max(answer.time / found.answer.time - 1.0, _to_be_gained(before.answer, answer))
-            if best is None or answer.time < best.time:
-                best = answer
             if left <= _STANDS or asked > _MOST:
                 break
-        elif best is not None:
-            break  # so fine that the search fails: the knots before were fine enough
     if best is None:
         refuse(*problem, found.answer.sizes.size)
     return best
+
+
+def _slowed(problem: Problem, answer: Answer) -> Answer | None:
+    """The answer at the largest share of its rate that keeps the rows of the path between the stations too.
+
+    None where no share does, and the answer itself exceeds a row by more than a little: where the drives cannot hold
+    the weight, only a motion at speed keeps them.
+    """
+    between = answer.motion.finer(_BETWEEN)
+    rows = _in_unit(rows_of(*problem, between.knots), answer.unit)
+
+    def most(rate: float) -> float:
+        return float(_uses(between._replace(values=between.values * rate**2), rows).max())
+
+    rate = _largest_rate(most)
+    if rate is None:
+        return answer if most(1.0) <= 1.0 + _NEARLY else None
+    motion = answer.motion._replace(values=answer.motion.values * rate**2)
+    return answer._replace(motion=motion, time=answer.time / rate)
+
+
+def _largest_rate(used_at: Callable[[float], float]) -> float | None:
+    """The largest share of the rate, up to 1, at which no row is exceeded; None where none is found."""
+    if used_at(1.0) <= 1.0:
+        return 1.0
+    low, high = _LEAST_RATE, 1.0
+    if not used_at(low) <= 1.0:
+        return None
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if used_at(middle) <= 1.0 else (low, middle)
+    return low
 
 
 def _to_be_gained(coarse: Answer, fine: Answer) -> float:
@@ -142,8 +184,10 @@ def _first(problem: Problem, knots: Array) -> _Found:
 
 
 def _in_unit(rows: Rows, unit: float) -> Rows:
+    """With a bound of x too where nothing moves: the largest of all the others."""
     rows = rows.in_unit(unit)
-    return rows._replace(most=np.minimum(rows.most, _FASTEST))
+    bounded = np.isfinite(rows.most)
+    return rows._replace(most=np.where(bounded, rows.most, rows.most[bounded].max()))
 
 
 def _searched(

@@ -27,6 +27,7 @@ from trajectory.paths import Path, require_poses_of, require_smooth
 INTERVALS = 1000
 _LEAST_IN_PIECE = 8  # intervals between two knots of the path, at first
 _EXCESS = 1e-4  # over a limit in the middle of an interval that is not halved
+_BESIDES, _OVER = (0.25, 0.75), 1e-3  # where else an interval is looked at last, and what it may be over a limit there
 _UNUSED = 5e-4  # mean over the duration of the share of the limits that is left unused: twice what time may be lost
 _MOST = 40_000  # points on which time is still gained; where more were needed, more may be left unused
 _KEPT = 0.5  # of that: what the intervals that are not halved may leave
@@ -74,6 +75,10 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
         middle = path_rows(robot, path, limits, payload, 0.5 * rows.s[1:] + 0.5 * rows.s[:-1])
         open_ = _unsettled(rows, middle, x)
         if not open_.any():
+            for share in _BESIDES:
+                s = (1.0 - share) * rows.s[:-1] + share * rows.s[1:]
+                open_ |= _used(rows, path_rows(robot, path, limits, payload, s), x, share) > 1.0 + _OVER
+        if not open_.any():
             return TimedPath(path, TimeLaw.constant_acceleration("toppra", rows.s, np.sqrt(x)))
         rows = rows.merged(middle.chosen(open_))
     raise TimingFailed("toppra", asked, f"no settled answer on {rows.s.size} points")
@@ -120,16 +125,19 @@ def _refuse(robot: Mechanism, path: Path, limits: Limits, payload: float, s: Arr
     raise TimingFailed("toppra", asked, f"no motion within the limits passes s = {s[0]:.6g} m, pose ({pose}){near}")
 
 
-def _unsettled(rows: PathRows, middle: PathRows, x: Array) -> Array:
-    """(k,) the intervals in whose middle a limit is exceeded, or time is lost as none is used up."""
-    lengths = np.diff(rows.s)
-    u, mean = (np.diff(x) / (2 * lengths))[:, None], ((x[1:] + x[:-1]) / 2)[:, None]
-    without = middle.a * u + middle.b * mean + middle.c
+def _used(rows: PathRows, inside: PathRows, x: Array, share: float) -> Array:
+    """(k,) the most of a limit that is used in each interval, at a share of its length, whose rows are `inside`."""
+    u, there = (np.diff(x) / (2 * np.diff(rows.s)))[:, None], ((1.0 - share) * x[:-1] + share * x[1:])[:, None]
+    without = inside.a * u + inside.b * there + inside.c
     used = np.max(
         [np.abs(without + f).max(axis=-1, initial=0.0) for f in (rows.friction[:-1], rows.friction[1:])], axis=0
     )
-    used = np.maximum(used, mean[:, 0] / middle.highest)
-    speed = np.sqrt(x)
+    return np.maximum(used, there[:, 0] / inside.highest)
+
+
+def _unsettled(rows: PathRows, middle: PathRows, x: Array) -> Array:
+    """(k,) the intervals in whose middle a limit is exceeded, or time is lost as none is used up."""
+    lengths, used, speed = np.diff(rows.s), _used(rows, middle, x, 0.5), np.sqrt(x)
     lasting = 2 * lengths / (speed[1:] + speed[:-1])
     unused, exceeded = np.maximum(1.0 - used, 0.0) * lasting / lasting.sum(), used > 1.0 + _EXCESS
     exceeded |= lengths > _GRADING * np.minimum(np.append(lengths[1:], np.inf), np.append(np.inf, lengths[:-1]))
