@@ -12,19 +12,15 @@ import casadi as ca
 import numba
 import numpy as np
 
+from design.certificates.scaled_rows import ScaledRows
 from design.claims import Statement, to_show
 from design.region import Region
 from kinematics import (
     Array,
-    BlockProgram,
-    BoxProgram,
     ClaimSymbols,
-    Mechanism,
     Op,
     Program,
-    bulk,
     enclose,
-    evaluate,
     over_spans,
     replay,
 )
@@ -51,23 +47,14 @@ class LowerBounds:
         self._extent = np.array([high - low if high > low else 1.0 for low, high in intervals])
         middle = region.from_unit(np.full(region.dimension, 0.5), robot.pose_names)
         claims = to_show(statement, claim, middle)
-        fixed = [*robot.geometry.vector(), *statement.numbers]
         moving = ca.vertcat(*(model.pose[int(i)] for i in self.free)) if self.free.size else ca.SX(0, 1)
         gradient = ca.jacobian(claims.expressions, moving)
-        symbols = [model.pose, ca.vec(claims.scaling), model.geometry, claim.vector]
-
-        def program(*outputs: ca.SX) -> BoxProgram:
-            return BoxProgram.of(
-                Program.of(ca.Function("claims", symbols, ca.cse([ca.densify(o) for o in outputs]))), fixed
-            )
-
+        self._rows = ScaledRows(statement, claim, claims)
         self._count = claims.expressions.numel()
-        conditions = _conditions(symbols, claims.expressions)
-        self._with_gradient = program(claims.expressions, gradient, conditions)
-        self._plain = program(claims.expressions)
+        conditions = _conditions(self._rows.symbols, claims.expressions)
+        self._with_gradient = self._rows.program(claims.expressions, gradient, conditions)
+        self._plain = self._rows.program(claims.expressions)
         self._slopes = self._count * (1 + self.free.size)  # where the conditions start
-        self._chosen, self._size = claims.chosen, claims.scaling.numel()
-        self._matrix = _plain_program(robot, claims.matrix, claim, fixed) if claims.matrix is not None else None
 
     def lowest(self, low: Array, high: Array) -> tuple[Array, Array]:
         """Lower bounds and where to split.
@@ -80,7 +67,7 @@ class LowerBounds:
             makes; infinite where it is unknown.
         """
         middle = np.clip(0.5 * low + 0.5 * high, low, high)
-        scaling = self._scaling(middle)
+        scaling = self._rows.scaling(middle)
         natural, highest = enclose(self._with_gradient, np.hstack([low, scaling]), np.hstack([high, scaling]))
         decided = (natural[:, self._slopes :] == highest[:, self._slopes :]).all(axis=1)
         at = np.hstack([middle, scaling])
@@ -102,13 +89,6 @@ class LowerBounds:
         unknown = ~np.isfinite(spread).all(axis=1) | (spread == 0.0).all(axis=1)
         spread = np.where(unknown[:, None], ((high - low) / self._extent)[:, self.free], spread)
         return self.free[spread.argmax(axis=1)]
-
-    def _scaling(self, middle: Array) -> Array:
-        """(k, size) the numbers of the claims' scaling, column by column."""
-        if self._matrix is None:
-            return np.empty((len(middle), 0))
-        (values,) = evaluate(self._matrix, middle)
-        return np.swapaxes(self._chosen(values), -1, -2).reshape(len(middle), self._size)
 
 
 def _conditions(symbols: list[ca.SX], expressions: ca.SX) -> ca.SX:
@@ -136,13 +116,6 @@ def _conditions(symbols: list[ca.SX], expressions: ca.SX) -> ca.SX:
         },
     )
     return ca.vertcat(*found) if found else ca.SX(0, 1)
-
-
-def _plain_program(robot: Mechanism, matrix: ca.SX, claim: ClaimSymbols, fixed: list[float]) -> BlockProgram:
-    model = robot.model()
-    symbols = ca.vertcat(model.geometry, claim.vector)
-    matrix = ca.substitute(matrix, symbols, ca.SX(fixed))
-    return bulk(ca.Function("matrix", [model.pose], [ca.densify(matrix)]))
 
 
 @numba.njit(nogil=True, cache=True, error_model="numpy")

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
+from design.certificates.scaled_rows import ScaledRows
 from design.claims import Statement
 from design.region import Region
-from kinematics import Array, BoxProgram, ClaimSymbols, Program, enclose
+from kinematics import Array, ClaimSymbols, enclose
 
 _MOST = 1024  # poses that are tried at once, the lowest first
 
@@ -33,11 +34,10 @@ class Refuter:
         robot, claim = statement.robot, ClaimSymbols.fresh()
         model = robot.model()
         reach = robot.reach(model.pose, model.g)
-        rows = robot.margins[statement.margin].defining_rows(robot, claim)
+        shown = robot.margins[statement.margin].to_refute(robot, claim)
         self._limbs = reach.numel()
-        symbols = [model.pose, model.geometry, claim.vector]
-        program = Program.of(ca.Function("refute", symbols, [ca.densify(ca.vertcat(reach, rows))]))
-        self._rows = BoxProgram.of(program, [*robot.geometry.vector(), *statement.numbers])
+        self._scaled = ScaledRows(statement, claim, shown)
+        self._rows = self._scaled.program(ca.vertcat(reach, shown.expressions))
 
     def refutation(self, region: Region, poses: Array) -> Refutation | None:
         """The worst of the poses (k, n) that lie in the region and are shown to refute; None where none is."""
@@ -48,7 +48,8 @@ class Refuter:
             return None
         order = np.argsort(np.nan_to_num(values[failing], nan=-np.inf), kind="stable")
         poses = poses[failing[order[:_MOST]]]
-        _, highest = enclose(self._rows, poses, poses)
+        at = np.hstack([poses, self._scaled.scaling(poses)])
+        _, highest = enclose(self._rows, at, at)
         beyond = highest[:, : self._limbs].min(axis=1) < 0.0
         shown = np.flatnonzero(highest.min(axis=1) < 0.0)
         return Refutation(poses[shown[0]], not bool(beyond[shown[0]])) if len(shown) else None

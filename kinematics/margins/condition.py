@@ -26,6 +26,19 @@ class InverseConditionNumber(Margin):
         values = singular_values(robot.homogeneous_jacobian(measure.length))
         return values / reduce(ca.fmax, ca.vertsplit(values))
 
+    def to_refute(self, robot: Mechanism, claim: ClaimSymbols) -> ToShow:
+        """With M = J_mw^T J_mw and any v and w: |J_mw v|^2 |w|^2 - c^2 |J_mw w|^2 |v|^2 >= 0, and c <= 1.
+
+        The eigenvectors of M's smallest and largest eigenvalue at the pose serve as v and w.
+        """
+        j_mw = robot.homogeneous_jacobian(claim.measure.length)
+        both = ca.SX.sym("scaling", j_mw.shape[1], 2)
+        v, w = both[:, 0], both[:, 1]
+        least, most = ca.sumsqr(j_mw @ v) * ca.sumsqr(w), ca.sumsqr(j_mw @ w) * ca.sumsqr(v)
+        # A bound of 0 or below holds; its square would not say so.
+        row = least - ca.fmax(claim.bound, 0) ** 2 * most
+        return ToShow(ca.vertcat(row, 1 - claim.bound), both, j_mw.T @ j_mw, _extremes)
+
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
         """With M = J_mw^T J_mw and any mu: M - c^2 mu and mu - M are positive definite.
 
@@ -66,6 +79,13 @@ def _chosen(values: Array) -> Array:
     column = np.zeros((*gram.shape[:2], 1))
     column[:, :1] = mu
     return np.concatenate([*both, column], axis=2)
+
+
+def _extremes(gram: Array) -> Array:
+    """(k, n, n) -> (k, n, 2) unit eigenvectors of the smallest and the largest eigenvalue."""
+    usable = np.isfinite(gram).all(axis=(1, 2))
+    _, vectors = np.linalg.eigh(np.where(usable[:, None, None], gram, np.eye(gram.shape[1])))
+    return vectors[:, :, [0, -1]]
 
 
 def _root_inverse(matrices: Array) -> Array:

@@ -23,13 +23,13 @@ class PassiveJoints(Margin):
         """One or two a joint."""
         return _rows(robot, lambda joint, limits: joint.room(limits))
 
-    def defining_rows(self, robot: Mechanism, claim: ClaimSymbols) -> ca.SX:
+    def to_refute(self, robot: Mechanism, claim: ClaimSymbols) -> ToShow:
         """By `PassiveJoint.within`: sines and cosines in place of the arctangent."""
-        return _rows(robot, lambda joint, limits: joint.within(limits, claim.bound))
+        return ToShow(_rows(robot, lambda joint, limits: joint.within(limits, claim.bound)), ca.SX(0, 0))
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:  # noqa: ARG002
-        """The defining rows."""
-        return ToShow(self.defining_rows(robot, claim), ca.SX(0, 0))
+        """The same, which hold if and only if the margin reaches the bound."""
+        return self.to_refute(robot, claim)
 
 
 def _rows(robot: Mechanism, rows: Callable[[PassiveJoint, Pair], list[ca.SX]]) -> ca.SX:

@@ -64,7 +64,7 @@ class ClaimSymbols:
 
 @dataclass(frozen=True)
 class ToShow:
-    """Expressions (c,) that must be at least 0 over a region; `scaling` holds symbols of a matrix of any numbers.
+    """Expressions (c,) of which is shown whether they are at least 0; `scaling` holds symbols of any numbers.
 
     `matrix` is what these come from, in the middle of each box, by `chosen`: (k, r, c) plain values -> (k, rows,
     columns) of `scaling`. None where no scaling stands in the expressions.
@@ -109,9 +109,9 @@ class Margin(ABC):
         """The margin itself."""
         return smallest(self.components(robot, measure))
 
-    def defining_rows(self, robot: Mechanism, claim: ClaimSymbols) -> ca.SX:
-        """Expressions, all at least 0 if and only if the margin, where it has a value, reaches the bound."""
-        return self.components(robot, claim.measure) - claim.bound
+    def to_refute(self, robot: Mechanism, claim: ClaimSymbols) -> ToShow:
+        """Expressions of which none is below 0 where the margin has a value and reaches the bound, for any scaling."""
+        return ToShow(self.components(robot, claim.measure) - claim.bound, ca.SX(0, 0))
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
         """What implies that the margin reaches the bound everywhere in a connected region.

@@ -136,11 +136,9 @@ def run_map(
 
 def _proof(request: MapRequest, seconds: float) -> Callable[[], CertifiedRegion]:
     """The search for the certified region, with everything that may be wrong checked before anything runs."""
-    r, option = request, "--certified"
-    if r.index.name not in r.robot.margins:
-        raise InvalidOption(option, f"the index {r.index.name}", f"a margin: {', '.join(r.robot.margins)}")
+    r = request
     if r.bound is None:
-        raise InvalidOption(option, f"no bound of {r.index.name}", "--at-least C")
+        raise InvalidOption("--certified", f"no bound of {r.index.name}", "--at-least C")
     region, bound, name = _fixed(r), r.bound, r.index.name
     measured: dict[str, Any] = {"bounds": r.fvi_bounds, "characteristic_length": r.characteristic_length}
     measured["seconds"] = seconds

@@ -60,7 +60,9 @@ def scale_of(robot: Mechanism, margin: str, factor: float) -> float:
     if margin == "joint_travel":
         units = set(robot.joint_units)
         return math.nan if len(units) > 1 else factor if units == {"m"} else 1.0
-    return factor if margin in ("reach", "clearance") else 1.0
+    if margin in ("v_w", "f_w", "force_capability") and set(robot.actuator_units) == {"rad"}:
+        return factor if margin == "v_w" else 1.0 / factor
+    return factor if robot.margins[margin].unit == "m" else 1.0
 
 
 def around_home(robot: Mechanism, half: float = 0.02) -> Box:

@@ -111,7 +111,7 @@ def test_what_has_no_such_family_is_refused() -> None:
     with pytest.raises(InvalidValue, match="depth"):
         certified_cells(ROBOT, CORNER, AXES, "fvi", at_least=1.0, depth=11)
     with pytest.raises(InvalidValue, match="margin"):
-        certified_cells(ROBOT, CORNER, AXES, "v_w", at_least=1.0)
+        certified_cells(ROBOT, CORNER, AXES, "speed", at_least=1.0)
     with pytest.raises(InvalidValue, match="at_least"):
         certified_cells(ROBOT, CORNER, AXES, "fvi", at_least=math.nan)
     with pytest.raises(InvalidValue, match="tolerance"):

@@ -110,7 +110,7 @@ def test_other_bounds_and_units() -> None:
 @pytest.mark.parametrize(
     ("options", "option", "words"),
     [
-        ({"margin": "speed"}, "--margin", "condition_number"),
+        ({"margin": "speed"}, "--margin", "inverse_condition_number"),
         ({"section": "y,y"}, "--section", "two different"),
         ({"section": "y"}, "--section", "two coordinates"),
         ({"section": "y,q"}, "--section", "one of x, y, z, theta"),
@@ -138,7 +138,6 @@ def test_an_option_that_cannot_be_used_is_named(options: dict[str, Any], option:
 @pytest.mark.parametrize(
     "asked",
     [
-        lambda: redundant(margin="v_w", at_least=1.0),
         lambda: redundant(margin="J_q"),
         lambda: redundant(at=("theta_deg=0,10",)),
         lambda: heli(section="z,theta", at=("x=0.1",)),

@@ -49,7 +49,7 @@ def test_where_a_search_does_not_converge_a_motion_rests_in_a_tiny_corner(
             refinement.refuse(*problem, intervals)
         return refinement.fastest(problem, intervals)
 
-    monkeypatch.setattr("trajectory.jerk.law.fastest", on_halves_alone)
+    monkeypatch.setattr("trajectory.laws.jerk.law.fastest", on_halves_alone)
     found = jerk_limited(robot, path, LIMITS, 0.5)
     assert len(parts) == 3
     assert isinstance(found, TimedPath)

@@ -50,7 +50,7 @@ def test_a_leg_too_short_for_a_few_hundredths_of_a_millimetre_is_found_between_s
     start = np.array([base[0] - end[0], base[1] - end[1] - nearest, base[2] - end[2] + height])
     far = start + np.array([0.0, 0.2, 0.0])
     path = RoundedPath(SIX, ((*start.tolist(), 0, 0, 0), (*far.tolist(), 0, 0, 0)), ())
-    robot = GoughStewart(geometry, ranges=GoughStewart.Ranges(joints=(height + 1e-9, 2.0)))
+    robot = GoughStewart(geometry, ranges=GoughStewart.Ranges(joints=(height + 1e-9, 2.0), passive=(math.pi, math.pi)))
     (sampled,) = path.evaluate(np.linspace(0.0, path.length, 2001), 0)
     assert robot.margin("joint_travel", sampled).min() > 0.0
     with pytest.raises(PathRefused) as caught:
