@@ -138,7 +138,7 @@ def test_two_commands_at_once_leave_the_files_of_one(tmp_path: Path) -> None:
     code = """
 import sys
 from pathlib import Path
-from studies.output_folder import OutputFolder
+from studies.results import OutputFolder
 for k in range(40):
     OutputFolder(Path(sys.argv[1])).write({"a": {name: f"{sys.argv[2]} {k}" for name in "abcd"}}, sys.argv[2])
 """
