@@ -34,7 +34,7 @@ from design.maps import (
     level_set,
     map_of,
 )
-from design.region import Box, Cylinder, Region
+from design.regions import Box, Cylinder, Region
 from design.requirement import Bounds, Requirement, SumLimit
 from design.sampling import Sweep, WorstPoses, sweep, worst_poses
 from design.synthesis import Problem, Synthesis, SynthesisFailed, active_sets, synthesise, worst_of

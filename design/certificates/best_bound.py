@@ -10,7 +10,7 @@ import numpy as np
 from design.budget import Budget
 from design.certificates.certificate import MOST_BOXES, SEED, Certificate, Progress, answer, checked_boxes, suspects
 from design.claims import Statement
-from design.region import Region
+from design.regions import Region
 from kinematics import FviBounds, Mechanism, positive
 
 _MOST_TRIES = 12  # of bounds, the refuted ones included

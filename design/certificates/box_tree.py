@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from design.errors import BrokenCertificate
-from design.region import Cylinder, Region
+from design.regions import Cylinder, Region
 from kinematics import Array
 
 PROVED, OUTSIDE, LEFT = -1, -2, -3  # leaves; a code from 0 on is the coordinate that is cut
@@ -42,7 +42,8 @@ def outside(region: Region, low: Array, high: Array, names: tuple[str, ...]) -> 
         return np.zeros(len(low), dtype=bool)
     columns = [names.index("x"), names.index("y")]
     nearest = np.maximum(np.maximum(low[:, columns], -high[:, columns]), 0.0)
-    return (nearest**2).sum(axis=1) * (1.0 - 1e-15) > region.radius**2 * (1.0 + 1e-15)
+    result: Array = (nearest**2).sum(axis=1) * (1.0 - 1e-15) > region.radius**2 * (1.0 + 1e-15)
+    return result
 
 
 class Tree:

@@ -15,7 +15,7 @@ from design.certificates.box_tree import BATCH, OUTSIDE, PROVED, Tree, halves, o
 from design.certificates.lower_bounds import LowerBounds
 from design.certificates.refutation import Refutation, Refuter
 from design.certificates.symmetry import Mirrors, one_side
-from design.region import Region
+from design.regions import Region
 from kinematics import Array
 
 SMALLEST = 1e-6  # boxes narrower than this part of the region in every coordinate are not cut

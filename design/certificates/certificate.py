@@ -27,7 +27,7 @@ from design.certificates.lower_bounds import LowerBounds
 from design.certificates.refutation import Refuter
 from design.certificates.symmetry import Mirrors, mirrors_of
 from design.claims import Statement
-from design.region import Region
+from design.regions import Region
 from design.sampling import worst_poses
 from kinematics import Array, FviBounds, Mechanism, rounded_down, whole
 

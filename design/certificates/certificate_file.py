@@ -21,7 +21,7 @@ import numpy as np
 from design.certificates.box_tree import MOST_NODES
 from design.certificates.certificate import Certificate
 from design.errors import UnreadableCertificate
-from design.region import Box, Cylinder, Region
+from design.regions import Box, Cylinder, Region
 from kinematics import Array, FviBounds, LinkwrightError
 
 _PLAIN: dict[str, type] = {

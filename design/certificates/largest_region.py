@@ -14,7 +14,7 @@ import numpy as np
 
 from design.budget import Budget
 from design.certificates.certificate import MOST_BOXES, Certificate, certify
-from design.region import Cylinder
+from design.regions import Cylinder
 from kinematics import Array, FviBounds, InvalidValue, Mechanism, positive
 
 

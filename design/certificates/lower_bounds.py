@@ -14,7 +14,7 @@ import numpy as np
 
 from design.certificates.scaled_rows import ScaledRows
 from design.claims import Statement, to_show
-from design.region import Region
+from design.regions import Region
 from kinematics import (
     Array,
     ClaimSymbols,
@@ -88,7 +88,8 @@ class LowerBounds:
             return np.zeros(len(low), dtype=np.int64)
         unknown = ~np.isfinite(spread).all(axis=1) | (spread == 0.0).all(axis=1)
         spread = np.where(unknown[:, None], ((high - low) / self._extent)[:, self.free], spread)
-        return self.free[spread.argmax(axis=1)]
+        result: Array = self.free[spread.argmax(axis=1)]
+        return result
 
 
 def _conditions(symbols: list[ca.SX], expressions: ca.SX) -> ca.SX:

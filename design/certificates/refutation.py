@@ -12,7 +12,7 @@ import numpy as np
 
 from design.certificates.scaled_rows import ScaledRows
 from design.claims import Statement
-from design.region import Region
+from design.regions import Region
 from kinematics import Array, ClaimSymbols, enclose
 
 _MOST = 1024  # poses that are tried at once, the lowest first

@@ -13,7 +13,7 @@ from design.certificates.lower_bounds import LowerBounds
 from design.certificates.refutation import Refuter
 from design.certificates.symmetry import mirrors_of, one_side
 from design.errors import BrokenCertificate, OtherCertificate
-from design.region import Region
+from design.regions import Region
 from kinematics import Array, FviBounds, Mechanism
 
 _CUTS = 2  # a box that only just passed may need a cut where another library rounds its scaling differently

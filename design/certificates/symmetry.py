@@ -17,7 +17,7 @@ from functools import lru_cache
 import casadi as ca
 
 from design.certificates.normal_form import Form, NoForm, forms
-from design.region import Region
+from design.regions import Region
 from kinematics import Array, Mechanism, Model
 
 Mirrors = tuple[tuple[str, ...], ...]

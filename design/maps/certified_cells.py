@@ -18,7 +18,7 @@ from design.errors import InvalidSection
 from design.maps.map_index import index_of
 from design.maps.sampled_map import Map, map_of
 from design.maps.section import Section
-from design.region import Box, Region
+from design.regions import Box, Region
 from kinematics import Array, FviBounds, Mechanism, whole
 
 DEPTH = 7  # at most 2^7 cells along each axis

@@ -210,7 +210,8 @@ def _triangles(chart: Map) -> Array:
     middle = sum(corners) / 4.0
     sides = [np.stack([corners[k], corners[(k + 1) % 4], middle], axis=-2) for k in range(4)]
     triangles = np.concatenate([side.reshape(-1, 3, 4) for side in sides])
-    return triangles[np.isfinite(triangles[:, :, _GOOD]).all(axis=1)]
+    result: Array = triangles[np.isfinite(triangles[:, :, _GOOD]).all(axis=1)]
+    return result
 
 
 def _clipped(triangles: Array, column: int, level: float) -> Array:
@@ -234,4 +235,5 @@ def _clipped(triangles: Array, column: int, level: float) -> Array:
 def _cut(a: Array, b: Array, column: int, level: float) -> Array:
     """(s, 4) where the edges from a to b cross the level."""
     share = (level - a[:, column]) / (b[:, column] - a[:, column])
-    return a + share[:, None] * (b - a)
+    result: Array = a + share[:, None] * (b - a)
+    return result

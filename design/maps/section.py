@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 
 from design.errors import InvalidSection
-from design.region import Region
+from design.regions import Region
 from kinematics import Array
 
 _ROUNDING = 1e-12  # relative to the largest number between the bounds

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from design.budget import Budget
-from design.region import Region, unit_grid
+from design.regions import Region, unit_grid
 from design.sampling.sweep import sweep
 from kinematics import Array, FviBounds, Mechanism, whole
 
@@ -45,7 +45,8 @@ class WorstPoses:
     @property
     def pose(self) -> Array:
         """(n,) where it is."""
-        return self.poses[0]
+        result: Array = self.poses[0]
+        return result
 
 
 def dense_counts(dimension: int, about: int) -> tuple[int, ...]:

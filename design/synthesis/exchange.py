@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from design.budget import Budget
-from design.region import Region
+from design.regions import Region
 from design.sampling import DENSE, WorstPoses, worst_poses
 from design.synthesis.errors import SynthesisFailed
 from design.synthesis.nlp import NlpSolution, Problem, solve

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from design.budget import Budget
-from design.region import Region
+from design.regions import Region
 from design.sampling import DENSE, WorstPoses
 from design.synthesis.exchange import Candidate, Exchange, Progress, Round
 from design.synthesis.nlp import NlpSolution, Problem

@@ -42,7 +42,8 @@ def least_peak(jacobian: Array, torque: Array, limits: Array) -> Array:
     good = np.isfinite(ratio).all(axis=-1) & np.isfinite(scaled).all(axis=(-2, -1))
     result = np.full(ratio.shape, np.nan)
     result[good] = _least(ratio[good], np.linalg.svd(scaled[good])[0][..., n:])
-    return (result * limits).reshape(*lead, m)
+    answer: Array = (result * limits).reshape(*lead, m)
+    return answer
 
 
 def _least(ratio: Array, null: Array) -> Array:
@@ -65,7 +66,8 @@ def _least(ratio: Array, null: Array) -> Array:
     slack = _ROUNDING * np.abs(ratio).max(axis=-1)
     left = ~(np.abs(shared).max(axis=-1) <= level + slack)  # no share can be below the level
     shared[left] = _best_vertex(ratio[left], null[left])
-    return shared
+    result: Array = shared
+    return result
 
 
 def _best_vertex(ratio: Array, null: Array) -> Array:

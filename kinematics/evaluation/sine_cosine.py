@@ -36,4 +36,5 @@ def sine(x: float, quarters: float) -> float:
     quarter = (n + quarters) * 0.25
     quarter -= np.floor(quarter)
     value = s if quarter == 0.0 or quarter == 0.5 else c
-    return value if quarter < 0.5 else -value
+    result: float = value if quarter < 0.5 else -value
+    return result

@@ -94,7 +94,8 @@ def _root_inverse(matrices: Array) -> Array:
     eye = np.eye(matrices.shape[1])
     values, vectors = np.linalg.eigh(np.where(usable[:, None, None], matrices, eye))
     size = np.maximum(np.abs(values).max(axis=1, keepdims=True), 1e-200)
-    return vectors / np.sqrt(np.maximum(values, 1e-14 * size))[:, None, :]
+    result: Array = vectors / np.sqrt(np.maximum(values, 1e-14 * size))[:, None, :]
+    return result
 
 
 INVERSE_CONDITION_NUMBER = InverseConditionNumber()

@@ -35,7 +35,8 @@ def track(path: Array, starts: Array, block: int, correction: float = CORRECTION
         nothing, as before a singular end. There, the end is the last point on it.
     """
     path, starts = (np.ascontiguousarray(a, dtype=complex) for a in (path, starts))
-    return _track(path, starts, block, float(correction))
+    result: tuple[Array, Array] = _track(path, starts, block, float(correction))
+    return result
 
 
 def refine(system: Array, points: Array, block: int, iterations: int = 5) -> tuple[Array, Array]:
@@ -51,7 +52,8 @@ def refine(system: Array, points: Array, block: int, iterations: int = 5) -> tup
     """
     path = np.zeros((3, *system.shape), dtype=complex)
     path[0] = system
-    return _refine(path, np.ascontiguousarray(points, dtype=complex), block, iterations)
+    result: tuple[Array, Array] = _refine(path, np.ascontiguousarray(points, dtype=complex), block, iterations)
+    return result
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")

@@ -37,4 +37,5 @@ def turn(vector: Array) -> Array:
     v = 0.5 * np.sinc(half / np.pi) * vector
     scalar = np.cos(half)[..., None]
     outer = v[..., :, None] * v[..., None, :]
-    return (2.0 * scalar**2 - 1.0) * np.eye(3) + 2.0 * outer + 2.0 * scalar * skew(v)
+    result: Array = (2.0 * scalar**2 - 1.0) * np.eye(3) + 2.0 * outer + 2.0 * scalar * skew(v)
+    return result

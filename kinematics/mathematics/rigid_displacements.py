@@ -58,7 +58,8 @@ def point(rotation: Array, translation: Array) -> Array:
     e = quaternion(rotation)
     f = 0.5 * _product(np.concatenate([np.zeros_like(translation[..., :1]), translation], axis=-1), e)
     x = np.concatenate([e, f], axis=-1)
-    return x / np.linalg.norm(x, axis=-1, keepdims=True)
+    result: Array = x / np.linalg.norm(x, axis=-1, keepdims=True)
+    return result
 
 
 def displacement(x: Array) -> tuple[Array, Array]:
@@ -85,7 +86,8 @@ def quaternion(rotation: Array) -> Array:
     k[..., 1:, 1:] = r + np.swapaxes(r, -1, -2) + (1.0 - trace)[..., None, None] * np.eye(3)
     best = np.argmax(np.einsum("...ii->...i", k), axis=-1)
     row = np.take_along_axis(k, best[..., None, None], axis=-2)[..., 0, :]
-    return row / np.linalg.norm(row, axis=-1, keepdims=True)
+    result: Array = row / np.linalg.norm(row, axis=-1, keepdims=True)
+    return result
 
 
 def _product(p: Array, q: Array) -> Array:

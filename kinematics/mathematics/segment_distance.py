@@ -22,7 +22,8 @@ def segment_distances(one: Array, two: Array) -> Array:
     (a, b), (c, d) = (np.moveaxis(np.asarray(s, dtype=float), -2, 0) for s in (one, two))
     ends = np.minimum(_point_to_segment(a, c, d), _point_to_segment(b, c, d))
     ends = np.minimum(ends, np.minimum(_point_to_segment(c, a, b), _point_to_segment(d, a, b)))
-    return np.fmin(ends, _perpendicular(a, b, c, d))
+    result: Array = np.fmin(ends, _perpendicular(a, b, c, d))
+    return result
 
 
 def segment_gap_symbolic(one: ca.SX, two: ca.SX) -> ca.SX:
@@ -50,7 +51,8 @@ def _point_to_segment(p: Array, a: Array, b: Array) -> Array:
     along = b - a
     square = _dot(along, along)
     t = np.divide(_dot(p - a, along), square, out=np.zeros_like(square), where=square > 0.0)
-    return np.linalg.norm(p - a - np.clip(t, 0.0, 1.0)[..., None] * along, axis=-1)
+    result: Array = np.linalg.norm(p - a - np.clip(t, 0.0, 1.0)[..., None] * along, axis=-1)
+    return result
 
 
 def _perpendicular(a: Array, b: Array, c: Array, d: Array) -> Array:
@@ -66,4 +68,5 @@ def _perpendicular(a: Array, b: Array, c: Array, d: Array) -> Array:
 
 
 def _dot(u: Array, v: Array) -> Array:
-    return (u * v).sum(axis=-1)
+    result: Array = (u * v).sum(axis=-1)
+    return result

@@ -164,4 +164,5 @@ def _moved_to(place: np.ndarray) -> np.ndarray:
 
 def _shares(matrix: np.ndarray) -> np.ndarray:
     values = np.linalg.svd(matrix, compute_uv=False)
-    return values / values[0]
+    result: np.ndarray = values / values[0]
+    return result

@@ -80,10 +80,12 @@ def _over_home(robot: Mechanism, poses: Array, joints: Array) -> Array:
     """(k, 1 + m) the same over their values at home; 1 where home has none."""
     home = _at_home(robot)
     values = _values(robot, poses, joints)
-    return np.divide(values, home, out=np.ones_like(values), where=home != 0.0)
+    result: Array = np.divide(values, home, out=np.ones_like(values), where=home != 0.0)
+    return result
 
 
 @lru_cache(maxsize=512)
 def _at_home(robot: Mechanism) -> Array:
     """(1 + m,) 0 where home is out of reach or singular."""
-    return np.nan_to_num(_values(robot, robot.home[None], robot.inverse(robot.home)[None]))[0]
+    result: Array = np.nan_to_num(_values(robot, robot.home[None], robot.inverse(robot.home)[None]))[0]
+    return result

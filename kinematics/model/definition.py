@@ -141,4 +141,5 @@ class Definition(ABC):
     @staticmethod
     def moved(pose: Array, twist: Array) -> Array:
         """(k, n) poses after small displacements (k, n); not a sum where the pose holds Euler angles."""
-        return pose + twist
+        result: Array = pose + twist
+        return result

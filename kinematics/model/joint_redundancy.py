@@ -214,4 +214,5 @@ def signature_angles(robot: Mechanism, pose: Array) -> Array:
     cosine = unit @ np.swapaxes(unit, -1, -2)
     # |u_i - c u_j| is the sine, exact for small angles where the arc cosine is not
     sine = np.linalg.norm(unit[..., :, None, :] - cosine[..., None] * unit[..., None, :, :], axis=-1)
-    return np.arctan2(sine, np.abs(cosine))
+    result: Array = np.arctan2(sine, np.abs(cosine))
+    return result

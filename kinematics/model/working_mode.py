@@ -84,7 +84,8 @@ def _apart(robot: Mechanism, found: Array, wanted: Array) -> Array:
     """(m,) how far joints are apart, angles as if a turn were nothing."""
     turns = np.array([unit == "rad" for unit in robot.joint_units])
     gap = found - wanted
-    return np.where(turns, 2 * np.abs(np.sin(gap / 2)), np.abs(gap))
+    result: Array = np.where(turns, 2 * np.abs(np.sin(gap / 2)), np.abs(gap))
+    return result
 
 
 def _quarter(angle: float, low: float, high: float) -> int:

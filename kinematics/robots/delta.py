@@ -97,7 +97,8 @@ class Delta(RotaryLimbs):
     @staticmethod
     def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """Each pair of rods by the line midway."""
-        return columns(pose, 3) + g.platform_radius * radial_directions(g.azimuths)[0]
+        result: ca.SX = columns(pose, 3) + g.platform_radius * radial_directions(g.azimuths)[0]
+        return result
 
     @staticmethod
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
@@ -134,7 +135,8 @@ class Delta(RotaryLimbs):
 
     def working_forward(self, joints: Array) -> Array:
         """(..., 3) -> (..., 3): on the side of the plane of the rods' upper ends (moved inward by r) where home is."""
-        return self._both(self._joints(joints))[self._side]
+        result: Array = self._both(self._joints(joints))[self._side]
+        return result
 
     def assembly_modes(self, joints: Array) -> Array:
         """(3,) -> (k, 3), every real pose with these joints, none or two (one where they meet); the working one first.
@@ -145,7 +147,8 @@ class Delta(RotaryLimbs):
         both = self._both(joints)[[self._side, 1 - self._side]]
         both = both[np.isfinite(both).all(axis=-1)]
         meet = len(both) and np.abs(both[0] - both[1]).max() <= _SAME * self.geometry.rod_length
-        return both[:1] if meet else both
+        result: Array = both[:1] if meet else both
+        return result
 
 
 def _spheres(robot: Delta, model: Model) -> Build:

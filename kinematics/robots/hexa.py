@@ -118,7 +118,8 @@ class Hexa(SixLegs, RotaryLimbs):
     @staticmethod
     def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """(3, 6) B_i."""
-        return columns(pose[:3], 6) + SixLegs.rotation(pose) @ ca.reshape(g.platform_points, 3, 6)
+        result: ca.SX = columns(pose[:3], 6) + SixLegs.rotation(pose) @ ca.reshape(g.platform_points, 3, 6)
+        return result
 
     @classmethod
     def platform_axes(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:

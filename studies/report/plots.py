@@ -9,7 +9,6 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from design import Map, Problem, Region, Section, index_of, map_of
@@ -178,7 +177,6 @@ def _axis(name: str) -> str:
 
 def png(figure: Figure) -> bytes:
     """The figure, drawn; the same bytes for the same figure."""
-    figure.set_dpi(130)
     buffer = io.BytesIO()
-    FigureCanvasAgg(figure).print_png(buffer, metadata={"Software": None})
+    figure.savefig(buffer, format="png", dpi=130, metadata={"Software": None})
     return buffer.getvalue()

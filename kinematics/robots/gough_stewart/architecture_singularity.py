@@ -53,7 +53,8 @@ def _normalised(points: Array) -> Array:
     """About their centroid, with mean square radius 1; unchanged where all coincide."""
     centred = points - points.mean(axis=0)
     size = math.sqrt(np.mean(np.sum(centred**2, axis=1)))
-    return centred / size if size > 0.0 else centred
+    result: Array = centred / size if size > 0.0 else centred
+    return result
 
 
 def _coincide(points: Array, i: int, j: int) -> bool:
@@ -93,7 +94,8 @@ def _planar_reason(a: Array, b: Array) -> str | None:
 
 def _in_plane(points: Array) -> Array:
     """(6, 2) coordinates in the points' plane."""
-    return points @ np.linalg.svd(points)[2][:2].T
+    result: Array = points @ np.linalg.svd(points)[2][:2].T
+    return result
 
 
 def _dependent(matrix: Array) -> bool:

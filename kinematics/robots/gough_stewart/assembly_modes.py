@@ -187,7 +187,8 @@ def _distances(x: Array, y: Array) -> Array:
     inner = x.conj() @ y.T
     size = np.abs(inner)
     phase = np.where(size > 0.0, inner / np.where(size > 0.0, size, 1.0), 1.0)
-    return np.linalg.norm(x[:, None, :] * phase[..., None] - y[None], axis=-1)
+    result: Array = np.linalg.norm(x[:, None, :] * phase[..., None] - y[None], axis=-1)
+    return result
 
 
 def _regular(target: Platform, ends: Array) -> Array:
@@ -195,7 +196,8 @@ def _regular(target: Platform, ends: Array) -> Array:
     refined, last = refine(target.system(), ends, _ROTATION)
     e = refined[:, :_ROTATION]
     size = np.abs(np.sum(e * e, axis=1)) / np.sum(np.abs(e) ** 2, axis=1)
-    return refined[(last < _REGULAR) & (size > _FINITE)]
+    result: Array = refined[(last < _REGULAR) & (size > _FINITE)]
+    return result
 
 
 def _complex(rng: np.random.Generator, *shape: int) -> Array:

@@ -114,11 +114,12 @@ def assembly_modes(robot: GoughStewart, joints: Array) -> Array:
         raise LostPaths("these leg lengths", f"{dropped.sum()} real poses that Newton's method leaves", "none")
     poses = found.pose[found.converged]
     if not len(poses):
-        return poses
+        return np.empty((0, 6))
     gaps = apart(poses, poses, unit) - _uncertainty(robot, poses, unit)[:, None]
     poses = poses[[not (gaps[i, :i] < 0.0).any() for i in range(len(poses))]]
     order = np.argsort(apart(poses, robot.home[None], robot.characteristic_length)[:, 0], kind="stable")
-    return poses[order]
+    result: Array = poses[order]
+    return result
 
 
 def _refuse_self_motion(system: Array, ends: Array, poses_of: Callable[[Array], Array]) -> None:
@@ -135,14 +136,16 @@ def _uncertainty(robot: GoughStewart, poses: Array, unit: float) -> Array:
     """(k,) how far rounding may have moved a pose: on a singularity, a double pose is found as two near ones."""
     _, jacobian = robot.lengths_and_jacobian(poses)
     smallest = np.linalg.svd(jacobian * ([1.0] * 3 + [1.0 / unit] * 3), compute_uv=False)[:, -1]
-    return 1e-9 + 1e-13 / np.maximum(smallest, 1e-7)
+    result: Array = 1e-9 + 1e-13 / np.maximum(smallest, 1e-7)
+    return result
 
 
 def apart(first: Array, second: Array, unit: float) -> Array:
     """(k, l) distance of poses: translation over `unit` and the chord of the rotation."""
     shift = np.linalg.norm(first[:, None, :3] - second[None, :, :3], axis=-1) / unit
     chord = rotation(first[:, 3:])[:, None] - rotation(second[:, 3:])[None]
-    return shift + np.linalg.norm(chord, axis=(-2, -1))
+    result: Array = shift + np.linalg.norm(chord, axis=(-2, -1))
+    return result
 
 
 def _solved(jacobian: Array, error: Array) -> Array:
@@ -150,4 +153,5 @@ def _solved(jacobian: Array, error: Array) -> Array:
     try:
         return np.linalg.solve(jacobian, error[..., None])[..., 0]
     except np.linalg.LinAlgError:
-        return (np.linalg.pinv(np.nan_to_num(jacobian)) @ error[..., None])[..., 0]
+        result: Array = (np.linalg.pinv(np.nan_to_num(jacobian)) @ error[..., None])[..., 0]
+        return result

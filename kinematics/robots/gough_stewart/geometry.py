@@ -201,7 +201,8 @@ class SingularArchitecture(InvalidGeometry):
 
 
 def _moved(transform: Array, points: Array) -> Array:
-    return points @ transform[:3, :3].T + transform[:3, 3]
+    result: Array = points @ transform[:3, :3].T + transform[:3, 3]
+    return result
 
 
 def _inverse(transform: Array) -> Array:

@@ -61,13 +61,15 @@ class GoughStewart(SixLegs):
     def base_points(g: SimpleNamespace) -> ca.SX:
         """(3, 6) A_i in R_f; [8.6]."""
         z = ca.reshape(g.Z, 4, 4).T
-        return z[:3, :3] @ ca.reshape(g.base_points, 3, 6) + ca.repmat(z[:3, 3], 1, 6)
+        result: ca.SX = z[:3, :3] @ ca.reshape(g.base_points, 3, 6) + ca.repmat(z[:3, 3], 1, 6)
+        return result
 
     @staticmethod
     def tool_points(g: SimpleNamespace) -> ca.SX:
         """(3, 6) B_i in R_E, by the inverse of E; [8.7] prints E itself."""
         e = ca.reshape(g.E, 4, 4).T
-        return e[:3, :3].T @ (ca.reshape(g.platform_points, 3, 6) - ca.repmat(e[:3, 3], 1, 6))
+        result: ca.SX = e[:3, :3].T @ (ca.reshape(g.platform_points, 3, 6) - ca.repmat(e[:3, 3], 1, 6))
+        return result
 
     @staticmethod
     def legs(pose: ca.SX, g: SimpleNamespace, twist: ca.SX | None = None) -> ca.SX:
@@ -138,7 +140,8 @@ class GoughStewart(SixLegs):
 
     def leg_rates(self, pose: Array, twist: Array) -> Array:
         """(..., 6), (..., 6) -> (..., 6) leg rates [m/s] from the twist of R_E; [8.12]."""
-        return np.einsum("...ij,...j->...i", self.inverse_jacobian(pose), _six(twist, "twist", _SCREW))
+        result: Array = np.einsum("...ij,...j->...i", self.inverse_jacobian(pose), _six(twist, "twist", _SCREW))
+        return result
 
     def legs_wrench(self, pose: Array, forces: Array) -> Array:
         """(..., 6), (..., 6) -> (..., 6) the wrench that the legs exert on the platform; [8.26].
@@ -149,7 +152,10 @@ class GoughStewart(SixLegs):
         Returns:
             force [N] and moment about O_E [N m].
         """
-        return np.einsum("...ij,...i->...j", self.inverse_jacobian(pose), _six(forces, "leg forces", self.joint_names))
+        result: Array = np.einsum(
+            "...ij,...i->...j", self.inverse_jacobian(pose), _six(forces, "leg forces", self.joint_names)
+        )
+        return result
 
     def leg_forces(self, pose: Array, external_wrench: Array) -> Array:
         """(..., 6), (..., 6) -> (..., 6) leg forces [N] that balance an external wrench on the platform.

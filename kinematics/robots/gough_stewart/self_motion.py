@@ -85,4 +85,5 @@ def _settled(system: Array, points: Array) -> Array:
 
 
 def _error(system: Array, points: Array) -> Array:
-    return np.abs(np.einsum("aij,ki,kj->ka", system, points, points)).max(axis=1)
+    result: Array = np.abs(np.einsum("aij,ki,kj->ka", system, points, points)).max(axis=1)
+    return result

@@ -78,7 +78,8 @@ class SixLegs(Mechanism):
         first, second = self._poses(first), self._poses(second)
         chord = np.linalg.norm(rotation(first[..., 3:]) - rotation(second[..., 3:]), axis=(-2, -1)) / np.sqrt(2)
         shift = np.abs(first[..., :3] - second[..., :3]).max(axis=-1) / self.geometry.size
-        return np.maximum(chord, shift)
+        result: Array = np.maximum(chord, shift)
+        return result
 
     def working_forward(self, joints: Array) -> Array:
         """(..., 6) -> (..., 6): continued from home."""

@@ -120,7 +120,10 @@ class Heli4(RotaryLimbs, RodLevel):
         """B_i (3, 4), where the rods meet the plates; (6)-(8), with p in metres per radian."""
         upper = ca.DM(_UPPER)
         heights = g.plate_offset + upper * (g.height_step + g.pitch / TURN * pose[3])
-        return ca.repmat(pose[:3], 1, 4) + g.platform_radius * radial_directions(g.azimuths)[0] + _heights(heights)
+        result: ca.SX = (
+            ca.repmat(pose[:3], 1, 4) + g.platform_radius * radial_directions(g.azimuths)[0] + _heights(heights)
+        )
+        return result
 
     # What makes it dimensionless.
 
@@ -148,7 +151,8 @@ class Heli4(RotaryLimbs, RodLevel):
                 end = platforms[:, limb] + offset
                 moved = end + displacement[:3] + ca.cross(plate, end - pose[:3]) + climb * _E_Z
                 rods.append((ca.sumsqr(arms[:, limb] + offset - moved) - g.rod_length**2) / 2)
-        return ca.vertcat(*rods)
+        result: ca.SX = ca.vertcat(*rods)
+        return result
 
     def internal_determinant_symbolic(self) -> ca.SX:
         """Expression (59) over d^4 l^4."""
@@ -157,7 +161,8 @@ class Heli4(RotaryLimbs, RodLevel):
         _, axis = radial_directions(model.g.azimuths)
         normals = [ca.cross(axis[:, i], rods[:, i]) for i in range(4)]
         lines = ca.cross(normals[0], normals[1]), ca.cross(normals[2], normals[3])
-        return ca.cross(*lines)[2] / model.g.rod_length**4
+        result: ca.SX = ca.cross(*lines)[2] / model.g.rod_length**4
+        return result
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms with their drives, rods, plates, payload and tool."""
@@ -252,7 +257,8 @@ class Heli4(RotaryLimbs, RodLevel):
 
     def _open(self, poses: Array, joints: Array) -> Array:
         """(k,) whether a closed form lost digits on the way."""
-        return np.abs(self.closure_gap(poses, joints)).max(axis=-1) > _OPEN
+        result: Array = np.abs(self.closure_gap(poses, joints)).max(axis=-1) > _OPEN
+        return result
 
     def assembly_modes(self, joints: Array) -> Array:
         """(4,) -> (k, 4), every real pose with these joints, at most four; the working one first."""

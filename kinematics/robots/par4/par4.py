@@ -113,13 +113,17 @@ class Par4(RotaryLimbs):
     def half_bar(psi: ca.SX, g: SimpleNamespace) -> ca.SX:
         """(3,) from the tool point to half 2, and reversed to half 1."""
         turned = g.bar_angle + psi
-        return g.bar_length / 2 * ca.vertcat(ca.cos(turned), ca.sin(turned), 0)
+        result: ca.SX = g.bar_length / 2 * ca.vertcat(ca.cos(turned), ca.sin(turned), 0)
+        return result
 
     @staticmethod
     def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """On a circle about the tool point at theta = 0; each half then moves as its end of the bars does."""
         moved = Par4.half_bar(pose[3] / g.amplification, g) - Par4.half_bar(ca.SX(0), g)
-        return columns(pose[:3], 4) + g.platform_radius * radial_directions(g.azimuths)[0] + moved @ ca.DM(_HALF).T
+        result: ca.SX = (
+            columns(pose[:3], 4) + g.platform_radius * radial_directions(g.azimuths)[0] + moved @ ca.DM(_HALF).T
+        )
+        return result
 
     @staticmethod
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:

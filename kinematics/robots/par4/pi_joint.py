@@ -17,7 +17,8 @@ class PiJoint(Margin):
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
         """One."""
         model = robot.model()
-        return ca.cos(model.pose[3] / model.g.amplification)
+        result: ca.SX = ca.cos(model.pose[3] / model.g.amplification)
+        return result
 
 
 PI_JOINT = PiJoint()

@@ -248,7 +248,8 @@ class Peppermill(Mechanism):
         modes = np.roll(self.forward_modes(joints), -limbs.SIDES.index(self.sides), axis=0)
         modes = modes[np.isfinite(modes).all(axis=-1)]
         _, first = np.unique(modes, axis=0, return_index=True)
-        return modes[np.sort(first)]
+        result: Array = modes[np.sort(first)]
+        return result
 
     # Masses and drawing.
 

@@ -102,14 +102,15 @@ def _sextic(centres: Array, radii: Array, points: Array) -> Array:
 def _angles(sextic: Array, every: bool) -> tuple[Array, Array]:
     """Rows and angles of all real roots."""
     rows, angles = [], []
-    for polynomial, angle in ((sextic, lambda t: 2 * np.arctan(t)), (sextic[:, ::-1], lambda t: 2 * np.arctan2(1, t))):
+    for polynomial, inverted in ((sextic, False), (sextic[:, ::-1], True)):  # tan(theta / 2), then its inverse
         found = [real_roots(polynomial)]
         if every:
             found.append(real_roots(polynomial[:, :-1] * np.arange(6, 0, -1)))
         for roots in found:
             row, column = np.nonzero(np.abs(roots) <= _CHART)
             rows.append(row)
-            angles.append(angle(roots[row, column]))
+            root = roots[row, column]
+            angles.append(2 * (np.arctan2(1, root) if inverted else np.arctan(root)))
     return np.concatenate(rows), np.concatenate(angles)
 
 
@@ -136,4 +137,5 @@ def _half_angle(constant: Array, cosine: Array, sine: Array) -> Array:
 
 
 def _cross(first: Array, second: Array) -> Array:
-    return (first.conj() * second).imag
+    result: Array = (first.conj() * second).imag
+    return result

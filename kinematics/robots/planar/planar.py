@@ -128,7 +128,8 @@ class Planar(Mechanism):
         By Hadamard's inequality on columns of squared sums 3 (both forces) and 3 rho^2 (moments about the centroid).
         """
         points = ca.reshape(g.platform_points, 2, 3)
-        return 1.5 * ca.sqrt(ca.sumsqr(points - ca.repmat(ca.sum2(points) / 3, 1, 3)))
+        result: ca.SX = 1.5 * ca.sqrt(ca.sumsqr(points - ca.repmat(ca.sum2(points) / 3, 1, 3)))
+        return result
 
     def platform_bodies(self, pose: ca.SX, g: SimpleNamespace, payload: float | ca.SX, bodies: Bodies) -> None:
         """Adds platform and payload."""

@@ -63,7 +63,8 @@ class Planar3PRR(Planar):
     def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
         """Half of |C_i B_i|^2 - l_i^2."""
         rods = Planar3PRR.circles(joints, g)[0] - Planar.platform_points(pose, g)
-        return (ca.sum1(rods * rods).T - g.rod_lengths**2) / 2
+        result: ca.SX = (ca.sum1(rods * rods).T - g.rod_lengths**2) / 2
+        return result
 
     @staticmethod
     def _from_rails(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
@@ -81,12 +82,14 @@ class Planar3PRR(Planar):
     @classmethod
     def limb_roots(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """How far each slider is from the foot of its platform point."""
-        return ca.sqrt(g.rod_lengths**2 - cls._from_rails(pose, g)[1] ** 2)
+        result: ca.SX = ca.sqrt(g.rod_lengths**2 - cls._from_rails(pose, g)[1] ** 2)
+        return result
 
     @staticmethod
     def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """How much longer each rod is than the way from B_i to its rail [m]."""
-        return g.rod_lengths - ca.fabs(Planar3PRR._from_rails(pose, g)[1])
+        result: ca.SX = g.rod_lengths - ca.fabs(Planar3PRR._from_rails(pose, g)[1])
+        return result
 
     @staticmethod
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:

@@ -93,12 +93,16 @@ class Redundant3T1R(RodLevel):
     def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """B_i (3, 6); (2), (3)."""
         forward, up = g.platform_length * _AHEAD.T, g.platform_height * _ABOVE.T
-        return ca.vertcat(pose[0] + ca.cos(pose[3]) * forward, pose[1] + ca.sin(pose[3]) * forward, pose[2] + up)
+        result: ca.SX = ca.vertcat(
+            pose[0] + ca.cos(pose[3]) * forward, pose[1] + ca.sin(pose[3]) * forward, pose[2] + up
+        )
+        return result
 
     @staticmethod
     def arm_lengths(g: SimpleNamespace) -> ca.SX:
         """L_i (6,)."""
-        return ca.vertcat(*(g.outer_arm_length if i in _OUTER else g.middle_arm_length for i in range(_LIMBS)))
+        result: ca.SX = ca.vertcat(*(g.outer_arm_length if i in _OUTER else g.middle_arm_length for i in range(_LIMBS)))
+        return result
 
     # The closure and its closed forms.
 
@@ -161,7 +165,8 @@ class Redundant3T1R(RodLevel):
                 moved = end + displacement[:3] + ca.cross(displacement[3:], end - pose[:3])
                 rod = moved - rails[:, limb] - offset
                 rods.append((lengths[limb] ** 2 - ca.sumsqr(rod)) / (2 * lengths[limb]))
-        return ca.vertcat(*rods)
+        result: ca.SX = ca.vertcat(*rods)
+        return result
 
     def internal_determinant_symbolic(self) -> ca.SX:
         """(n_3 x n_4) . e_z: det J_int over the square of the parallelograms' width."""
@@ -217,7 +222,8 @@ class Redundant3T1R(RodLevel):
 
     def arm_clearance(self, pose: Array, rods: bool = False) -> Array:
         """(...,) the smallest of `arm_distances` [m]; the arms' thickness is still to be taken off."""
-        return np.min(list(self.arm_distances(pose, rods).values()), axis=0)
+        result: Array = np.min(list(self.arm_distances(pose, rods).values()), axis=0)
+        return result
 
     # The forward models.
 

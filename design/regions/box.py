@@ -1,0 +1,85 @@
+"""Boxes of poses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import product
+
+import numpy as np
+
+from design.regions.bounds import Interval, interval
+from design.regions.region import ROUNDING, Region
+from kinematics import Array
+
+
+class Box(Region):
+    """An axis-aligned box: `Box(x=0.0, y=(-0.25, 0.25), ...)`; a number fixes a coordinate.
+
+    Raises:
+        InvalidRegion: bounds that are not finite or not in rising order.
+    """
+
+    def __init__(self, **coordinates: Interval) -> None:
+        self._intervals = {name: interval(name, value) for name, value in coordinates.items()}
+
+    def __repr__(self) -> str:
+        return f"Box({', '.join(f'{k}={v}' for k, v in self._intervals.items())})"
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float]]:
+        """Bounds by name."""
+        return dict(self._intervals)
+
+    @property
+    def dimension(self) -> int:
+        """Coordinates that are not fixed."""
+        return sum(low < high for low, high in self._intervals.values())
+
+    def from_unit(self, unit: Array, names: Sequence[str]) -> Array:
+        """Affine, in the order of `names`; fixed coordinates take no column of `unit`."""
+        pose = np.empty((*unit.shape[:-1], len(names)))
+        column = 0
+        for i, name in enumerate(names):
+            low, high = self._intervals[name]
+            if low < high:
+                pose[..., i] = low + (high - low) * unit[..., column]
+                column += 1
+            else:
+                pose[..., i] = low
+        return pose
+
+    def room(self, poses: Array, names: Sequence[str]) -> Array:
+        """To the nearest bound of a coordinate."""
+        low, high = np.array([self._intervals[name] for name in names]).T
+        result: Array = np.minimum(poses - low, high - poses).min(axis=-1)
+        return result
+
+    def grown(self, share: float) -> Box:
+        """By the largest of its own lengths."""
+        return self.grown_by(share, self.size)
+
+    def grown_by(self, share: float, size: float) -> Box:
+        """With the size of the region that this is a part of [m]."""
+        by = {name: share * (size if name in ("x", "y", "z") else 1.0) for name in self._intervals}
+        return Box(**{name: (low - by[name], high + by[name]) for name, (low, high) in self._intervals.items()})
+
+    def contains(self, poses: Array, names: Sequence[str], slack: float = ROUNDING) -> Array:
+        """Between all bounds."""
+        low, high = np.array([self._intervals[name] for name in names]).reshape(-1, 2).T
+        beyond = slack * np.maximum(np.abs(low), np.abs(high))
+        result: Array = ((poses >= low - beyond) & (poses <= high + beyond)).all(axis=-1)
+        return result
+
+    def narrowed(self, given: Mapping[str, Array]) -> dict[str, tuple[Array | float, Array | float]]:
+        """The others' own bounds."""
+        return {name: interval for name, interval in self._intervals.items() if name not in given}
+
+    def inset(self, given: Mapping[str, Array]) -> Array:
+        """No boundary is curved."""
+        return np.full(np.broadcast_shapes(*(np.shape(v) for v in given.values())), np.inf)
+
+    def outline(self) -> list[Array]:
+        """The box's edges."""
+        sides = [self._intervals.get(name, (0.0, 0.0)) for name in ("x", "y", "z")]
+        vertices = np.array(list(product(*sides)))
+        return [vertices[[i, j]] for i in range(8) for j in range(i + 1, 8) if (i ^ j) in (1, 2, 4)]

@@ -1,0 +1,153 @@
+"""Regions of the pose space, all coordinates continuous.
+
+A region is a map from the unit cube: one parametrisation serves grids, random samples and local searches, and its
+faces are the region's boundary.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+
+import numpy as np
+
+from design.errors import InvalidRegion
+from kinematics import Array
+
+ROUNDING = 1e-12  # relative to the largest number between the bounds
+_FEW = 4  # coordinates up to which three values of each are few poses
+CHUNK = 1 << 15  # poses: enough for all threads, and a chunk stays in the second cache
+
+
+def unit_grid(counts: Sequence[int], chunk: int = CHUNK) -> Iterator[Array]:
+    """(k, d) points of a regular grid of the unit cube, k <= chunk at a time; the last coordinate runs fastest."""
+    axes = [np.linspace(0.0, 1.0, c) if c > 1 else np.array([0.5]) for c in counts]
+    total = math.prod(counts)
+    for first in range(0, total, chunk):
+        place = np.arange(first, min(first + chunk, total))
+        unit = np.empty((len(place), len(axes)))
+        for column in reversed(range(len(axes))):
+            above = place // len(axes[column])  # far faster than divmod
+            unit[:, column] = axes[column][place - above * len(axes[column])]
+            place = above
+        yield unit
+
+
+class Region(ABC):
+    """A bounded set of poses."""
+
+    @property
+    @abstractmethod
+    def intervals(self) -> dict[str, tuple[float, float]]:
+        """Bounds of each coordinate by its name; equal bounds fix it."""
+
+    @abstractmethod
+    def from_unit(self, unit: Array, names: Sequence[str]) -> Array:
+        """(..., k) in [0, 1] -> (..., n) poses in the order of `names`."""
+
+    @property
+    @abstractmethod
+    def dimension(self) -> int:
+        """k, how many coordinates are free."""
+
+    @abstractmethod
+    def room(self, poses: Array, names: Sequence[str]) -> Array:
+        """(..., n) -> (...,) how far each pose is inside the nearest boundary, negative beyond it [m or rad]."""
+
+    @abstractmethod
+    def grown(self, share: float) -> Region:
+        """With each bound further out, of an angle by `share` radians, of a length by that share of `size`."""
+
+    @property
+    def size(self) -> float:
+        """The largest distance of a bound of x, y or z from 0 [m]: what makes a distance large or small here."""
+        bounds = [bound for name, pair in self.intervals.items() if name in ("x", "y", "z") for bound in pair]
+        return float(np.abs(bounds).max(initial=0.0))
+
+    @abstractmethod
+    def narrowed(self, given: Mapping[str, Array]) -> dict[str, tuple[Array | float, Array | float]]:
+        """Bounds of each coordinate that is not given, where those that are have these values (...,)."""
+
+    @abstractmethod
+    def inset(self, given: Mapping[str, Array]) -> Array:
+        """(...,) how far the given coordinates (...,) are inside a curved boundary [m]; infinity without one."""
+
+    @abstractmethod
+    def outline(self) -> list[Array]:
+        """Edges of the region's x, y, z part as polylines (k, 3), for drawing."""
+
+    @abstractmethod
+    def contains(self, poses: Array, names: Sequence[str], slack: float = ROUNDING) -> Array:
+        """(..., n) -> (...,) whether each pose is inside.
+
+        Args:
+            slack: a coordinate may be beyond a bound by this part of the larger of both bounds, without their signs.
+        """
+
+    def check(self, names: Sequence[str]) -> None:
+        """Check that the region speaks of exactly these coordinates.
+
+        Raises:
+            InvalidRegion: one is missing or unknown.
+        """
+        for name in names:
+            if name not in self.intervals:
+                raise InvalidRegion(name, "nothing", f"bounds for each of {', '.join(names)}")
+        for name in self.intervals:
+            if name not in names:
+                raise InvalidRegion(name, "a coordinate", f"one of {', '.join(names)}")
+
+    def complete(self, given: Mapping[str, Array], unit: Array, names: Sequence[str]) -> Array:
+        """Poses from some coordinates and a point of the unit cube for the others.
+
+        Args:
+            given: values (...,) by name.
+            unit: (..., k) in [0, 1], one column for each other coordinate that is not fixed, in the order of `names`.
+
+        Returns:
+            (..., n); affine in the others, so not uniform over their volume.
+        """
+        pose = np.empty((*unit.shape[:-1], len(names)))
+        bounds, column = self.narrowed(given), 0
+        for i, name in enumerate(names):
+            if name in given:
+                pose[..., i] = given[name]
+                continue
+            low, high = bounds[name]
+            pose[..., i] = low
+            if self.is_free(name):
+                pose[..., i] += (high - low) * unit[..., column]
+                column += 1
+        return pose
+
+    def is_free(self, name: str) -> bool:
+        """Whether a coordinate is not fixed."""
+        low, high = self.intervals[name]
+        return low < high
+
+    def grid(self, names: Sequence[str], counts: Sequence[int]) -> Array:
+        """(prod counts, n) poses on a regular grid of the unit cube, its faces included."""
+        return np.concatenate(list(self.walk(names, counts)))
+
+    def walk(self, names: Sequence[str], counts: Sequence[int], chunk: int = CHUNK) -> Iterator[Array]:
+        """The poses of `grid` in its order, (k, n) with k <= chunk at a time, so that no list of them is in memory."""
+        return (self.from_unit(unit, names) for unit in unit_grid(counts, chunk))
+
+    def spread(self, names: Sequence[str]) -> Array:
+        """(k, n) few distinct poses that reach every side of the region, corners and middle included."""
+        if self.dimension <= _FEW:
+            return np.unique(self.grid(names, (3,) * self.dimension), axis=0)
+        k = self.dimension  # corners, and the middle of each side and of the whole
+        sides = np.concatenate([np.full((1, k), 0.5), 0.5 + 0.5 * np.eye(k), 0.5 - 0.5 * np.eye(k)])
+        unit = np.concatenate([np.array(list(product((0.0, 1.0), repeat=k))), sides])
+        return np.unique(self.from_unit(unit, names), axis=0)
+
+    def extent(self, names: Sequence[str]) -> Array:
+        """(n,) widths of the coordinates' intervals."""
+        return np.array([self.intervals[name][1] - self.intervals[name][0] for name in names])
+
+    def random(self, names: Sequence[str], count: int, rng: np.random.Generator) -> Array:
+        """(count, n) poses, uniform over the region's volume."""
+        return self.from_unit(rng.random((count, self.dimension)), names)
