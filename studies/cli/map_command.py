@@ -12,19 +12,19 @@ from studies.cli.options import ForceOption, JsonOption, OutOption, PrototypeOpt
 
 MarginOption = Annotated[
     str | None,
-    typer.Option("--margin", help="Any margin of the mechanism; fvi if not given."),
+    typer.Option("--margin", help="The margin to map (default: fvi)."),
 ]
 SectionOption = Annotated[
     str | None,
-    typer.Option("--section", metavar="A,B", help="The plane, such as y,z; the first two that vary if not given."),
+    typer.Option("--section", metavar="A,B", help="The plane, such as y,z (default: the first two that vary)."),
 ]
 AtOption = Annotated[
     list[str] | None,
     typer.Option(
         "--at",
         metavar="NAME=VALUE[,...]",
-        help="Fix another coordinate, such as theta_deg=0; of several values the worst counts, "
-        "as it does over the whole interval if not given.",
+        help="Fix another coordinate, such as theta_deg=0. Of several values the worst counts "
+        "(default: the worst over its interval).",
     ),
 ]
 OverOption = Annotated[
@@ -32,7 +32,7 @@ OverOption = Annotated[
     typer.Option(
         "--over",
         metavar="NAME=LOW:HIGH",
-        help="Other bounds than the study's region has, such as z_mm=-800:800, or radius=0.7 of a cylinder.",
+        help="Replace bounds of the study's region, such as z_mm=-800:800, or radius=0.7 of a cylinder.",
     ),
 ]
 AtLeastOption = Annotated[
@@ -44,10 +44,10 @@ AtLeastOption = Annotated[
     ),
 ]
 CertifiedOption = Annotated[
-    bool, typer.Option("--certified", help="Prove too: the largest cylinder's radius, or the plane's cells.")
+    bool, typer.Option("--certified", help="Also prove: the largest cylinder's radius, or the plane's cells.")
 ]
 ToleranceOption = Annotated[
-    float, typer.Option("--tolerance", help="By what part the figures may still move when the grid is refined.")
+    float, typer.Option("--tolerance", help="Stop refining below this relative change.")
 ]
 
 

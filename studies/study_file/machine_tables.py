@@ -18,22 +18,22 @@ class DriveTrainTable(StudyTable):
     gear_ratio: Annotated[
         Numbers | None, Key("a number > 0, or one a joint (rad of the motor for one rad, or one m, of the joint)")
     ] = None
-    """Through it the motor's inertia and speed are felt."""
+    """The gear ratio: turns of the motor for one turn of the joint."""
     motor_inertia: Annotated[Numbers | None, Key("a number >= 0, or one a joint (kg m^2)")] = None
-    """Of the rotor, on its own side of the gear."""
+    """The inertia of the rotor, on its own side of the gear."""
     coulomb: Annotated[Numbers | None, Key("a number >= 0, or one a joint (N m, or N)")] = None
-    """Dry friction, at the joint."""
+    """The dry friction at the joint."""
     viscous: Annotated[Numbers | None, Key("a number >= 0, or one a joint (N m s/rad, or N s/m)")] = None
-    """Friction for each unit of speed, at the joint; the law `toppra` refuses it."""
+    """The friction for each unit of speed, at the joint. The law `toppra` refuses it."""
 
 
 class InertiaTable(StudyTable):
-    """What moves."""
+    """The masses that move, and the drives."""
 
     masses: dict[str, Numbers] = Field(default_factory=dict)
-    """By the fields of the mechanism's `Inertia` [SI]."""
+    """The fields of the mechanism's `Inertia` [SI]."""
     drive_train: Annotated[DriveTrainTable, table_of(DriveTrainTable)] = DriveTrainTable()
-    """What stands behind each actuator."""
+    """The gear, motor and friction behind each actuator."""
 
     @model_validator(mode="before")
     @classmethod

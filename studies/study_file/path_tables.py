@@ -23,40 +23,40 @@ class CycleTable(StudyTable):
     pick: Annotated[tuple[float, float, float], Key("three lengths x, y, z", LENGTH, place=True)]
     """Where the cycle starts."""
     size: Annotated[str | None, Key("one of", choices=tuple(STANDARD_SIZES))] = None
-    """Lift, span and place lift at once [mm]; a size says nothing of the corners, so it needs a blend beside it."""
+    """Lift, span and place lift at once [mm]. It says nothing about the corners, so it needs a blend beside it."""
     place: Annotated[
         tuple[float, float, float] | None,
         Key("three lengths x, y, z, not above the pick; no size beside it", LENGTH, place=True),
     ] = None
-    """Where the half cycle ends, in place of span, heading and rise."""
+    """The pose where the half cycle ends. It replaces span, heading and rise."""
     lift: Annotated[
         Positive | None, Field(validate_default=True), Key("a length > 0, or a size instead of it", LENGTH)
     ] = None
-    """Height of the vertical leg above the pick."""
+    """The height of the vertical leg above the pick."""
     span: Annotated[
         Positive | None, Field(validate_default=True), Key("a length > 0, or a size or a place instead of it", LENGTH)
     ] = None
-    """Horizontal distance from pick to place."""
+    """The horizontal distance from pick to place."""
     place_lift: Annotated[Positive | None, Key("a length > 0; no size beside it", LENGTH)] = None
-    """Height of the vertical leg above the place; None for the lift."""
+    """The height of the vertical leg above the place. None takes the lift."""
     rise: Annotated[float, Key("a length, how much higher the place is; no place beside it", LENGTH, place=True)] = 0.0
-    """Place above pick."""
+    """The height of the place above the pick."""
     heading: Annotated[float, Key("an angle; no place beside it", ANGLE)] = 0.0
-    """Direction of the span about z, from x."""
+    """The direction of the span: its angle about z, from x."""
     blend: Annotated[
         Positive, Key("a length > 0, at most the lift and at most half the span; needed beside a size, too", LENGTH)
     ]
-    """What a corner takes off each of its legs."""
+    """The length that a rounded corner takes off each of its legs."""
     turn: Annotated[float, Key("an angle", ANGLE)] = 0.0
-    """Change of theta, or yaw, from pick to place."""
+    """The change of theta, or yaw, from pick to place."""
     start_angle: Annotated[float, Key("an angle", ANGLE)] = 0.0
     """Theta, or yaw, at the pick."""
     tilt: Annotated[tuple[float, float], Key("two angles, roll and pitch at the place", ANGLE)] = (0.0, 0.0)
-    """From level at the pick; only where the pose has roll and pitch."""
+    """Roll and pitch at the place; the platform is level at the pick. Only where the pose has roll and pitch."""
     payload: Annotated[float, Field(ge=0), Key("a mass >= 0 (kg); payload_back for another one on the way back")]
-    """At the tool."""
+    """The mass at the tool."""
     payload_back: Annotated[float | None, Field(ge=0), Key("a mass >= 0 (kg)")] = None
-    """On the way back; None for the same."""
+    """The mass at the tool on the way back. None takes the same."""
 
     @field_validator("size")
     @classmethod
@@ -110,12 +110,12 @@ def adept_cycle(cycle: Mapping[str, Any], **others: Any) -> AdeptCycle:
 
 
 class WaypointTable(StudyTable):
-    """A pose, and the blend of the corner there; an angle that is left out is left to its neighbours."""
+    """A pose, and the blend of the corner there. An angle that is left out follows from its neighbours."""
 
     coordinates: dict[str, float]
-    """By the pose's names [m or rad]."""
+    """The pose [m or rad]."""
     blend: Annotated[float, Field(ge=0), Key("a length >= 0", LENGTH)] = 0.0
-    """What the corner takes off both of its legs; 0 stops there, unless the path goes straight on."""
+    """The length that the corner takes off each leg. At 0 the tool stops there, unless the path goes straight on."""
 
     @model_validator(mode="before")
     @classmethod
@@ -127,8 +127,8 @@ class WaypointPathTable(StudyTable):
     """A path through waypoints, from a CSV file beside the study or from the study itself."""
 
     file: Annotated[Name | None, Key("the name of a CSV file, or waypoints instead of it")] = None
-    """Beside the study."""
+    """The CSV file, beside the study."""
     waypoint: Annotated[tuple[WaypointTable, ...], table_of(WaypointTable, rows=True)] = ()
-    """In order; those of the file where one is given."""
+    """The waypoints in order. With a file, those of the file."""
     payload: Annotated[float, Field(ge=0), Key("a mass >= 0 (kg)")]
-    """At the tool, both ways."""
+    """The mass at the tool, both ways."""

@@ -20,7 +20,7 @@ KIND = Key("one of", choices=REGION_KINDS)
 
 class _RegionTable(StudyTable):
     coordinates: dict[str, Coordinate]
-    """By the pose's names: (low, high), or a number that fixes the coordinate [m or rad]."""
+    """The bounds of each pose coordinate: (low, high), or a number that fixes it [m or rad]."""
 
     @model_validator(mode="before")
     @classmethod
@@ -29,28 +29,28 @@ class _RegionTable(StudyTable):
 
 
 class BoxTable(_RegionTable):
-    """Every pose coordinate in its interval."""
+    """Every pose coordinate has its interval."""
 
     kind: Annotated[Literal["box"], KIND]
-    """With every coordinate of the pose beside it."""
+    """The shape; every coordinate of the pose stands beside it."""
 
 
 class CylinderTable(_RegionTable):
-    """x and y within `radius` [m] of the z axis; `coordinates` has the others."""
+    """x and y lie within `radius` [m] of the z axis; `coordinates` has the others."""
 
     kind: Annotated[Literal["cylinder"], KIND]
-    """With every coordinate of the pose but x and y beside it."""
+    """The shape; every coordinate of the pose but x and y stands beside it."""
     radius: Annotated[Positive, Key("a length > 0", LENGTH)]
-    """Of x and y about the z axis."""
+    """The largest distance from the z axis."""
 
 
 class HomeTable(StudyTable):
     """The pose that the robot works around: its working mode follows from it, and an approach starts there."""
 
     coordinates: dict[str, float]
-    """By the pose's names [m or rad]; one that is left out is in the middle of the region."""
+    """The pose [m or rad]. A coordinate that is left out is in the middle of the region."""
     joints: Annotated[tuple[float, ...] | None, Key("a finite number a joint")] = None
-    """About the joints at home, which choose a branch of each limb's inverse, such as elbows in; None for the usual."""
+    """Joints near those at home. They choose the branches of the inverse, such as elbows in. None takes the usual."""
 
     @model_validator(mode="before")
     @classmethod
@@ -59,74 +59,74 @@ class HomeTable(StudyTable):
 
 
 class FviTable(StudyTable):
-    """What the force-velocity index (39) is taken from: what the joints give, what is wanted."""
+    """What the force-velocity index (39) compares: what the joints give, and what is wanted."""
 
     joint_speed: Annotated[Positive, Key("a speed > 0", Dimension.JOINT_SPEED)]
-    """What each joint gives."""
+    """The largest value that each joint gives."""
     joint_effort: Annotated[Positive, Key("an effort > 0 (N m, or N on a rail)")]
-    """What each joint gives."""
+    """The largest value that each joint gives."""
     speed: Annotated[Positive, Key("a speed > 0 (m/s)")]
-    """Wanted worst isotropic speed [m/s]."""
+    """The wanted worst isotropic speed [m/s]."""
     force: Annotated[Positive, Key("a force > 0 (N)")]
-    """Wanted worst isotropic force [N]."""
+    """The wanted worst isotropic force [N]."""
     characteristic_length: Annotated[Positive | None, Key("a length > 0", LENGTH)] = None
-    """Makes a rotation a length; None for the mechanism's own."""
+    """The length that makes a rotation a length. None takes the mechanism's own."""
 
 
 class SumTable(StudyTable):
-    """The geometry's `fields`, added, are `at_most` [m]."""
+    """The sum of the geometry's `fields` is `at_most` [m]."""
 
     fields: Annotated[Annotated[tuple[Name, ...], Field(min_length=1)], Key("a list out of")]
-    """Lengths of the geometry, to be added; a tuple counts entry by entry."""
+    """The lengths of the geometry that are added. Lists are added entry by entry."""
     at_most: Annotated[Positive, Key("a length > 0", LENGTH)]
-    """The sum."""
+    """The largest sum that is allowed."""
 
 
 class OptimiseTable(StudyTable):
-    """What the synthesis may change."""
+    """What the optimisation may change."""
 
     seed: Annotated[int, Field(ge=0, lt=2**32), Key("a whole number from 0 to 2^32 - 1")] = 0
-    """Of the random starts."""
+    """The seed of the random starts."""
     starts: Annotated[int, Field(ge=1, le=10_000), Key("a whole number from 1 to 10000")] = 3
-    """Geometries to start from, the study's own first."""
+    """How many geometries to start from. The study's own is the first."""
     variables: Annotated[dict[str, Interval | tuple[Entry, ...]], Field(min_length=1), Table({})]
-    """What may change, by field: (low, high), one for each entry of a tuple; an entry with low = high stays there."""
+    """The bounds of each variable: (low, high), or a pair for each entry of a list. Equal bounds fix an entry."""
     sums: Annotated[tuple[SumTable, ...], table_of(SumTable, rows=True)] = ()
     """Limits of sums of lengths."""
 
 
 class RequirementTable(StudyTable):
-    """`margin` is `at_least` this at every pose of the region."""
+    """A margin and the bound that it must reach."""
 
     margin: Annotated[str, Key("one of")]
-    """What is required."""
+    """The margin."""
     at_least: Annotated[float, Key("a finite number, of reach 0 or more")]
-    """At every pose of the region and on the cycle."""
+    """Its lowest value that is allowed, at every pose of the region and on the cycle."""
 
 
 class CertifyTable(StudyTable):
-    """What is proved of every pose: each required margin at its bound, the objective and any other at its best."""
+    """What is proved over the region: each required margin at its bound, the objective and any other at its best."""
 
     margins: Annotated[tuple[Name, ...] | None, Key("a list out of")] = None
-    """None for all that are required, and the objective."""
+    """The margins to prove. None takes all that are required, and the objective."""
     tolerance: Annotated[Positive, Field(lt=1), Key("a number above 0 and below 1")] = 0.01
-    """By how much a best bound may stay below the lowest value found, relative to that value."""
+    """How far a best bound may stay below the lowest value found, relative to that value."""
     most_boxes: Annotated[int, Field(ge=4, le=8_000_000), Key("a whole number from 4 to 8000000")] = 4_000_000
-    """After so many a claim stays undecided."""
+    """The largest number of boxes for a claim. A claim that needs more is undecided."""
 
 
 Seconds = Annotated[Positive, Key("a time > 0 (s)")]
 
 
 class BudgetTable(StudyTable):
-    """How long a stage may take; what it has reached by then stands, and is reported."""
+    """How long a stage may take. What it has reached by then is kept and reported."""
 
     optimise: Seconds = 90.0
-    """Of the search for the best geometry [s]; one that is not found by then is none, and the best seen is told."""
+    """The time for the optimisation [s]. If it ends without an optimum, the best geometry seen is reported."""
     prove: Seconds = 40.0
-    """Of all claims together [s]; what is not decided by then is reported as undecided."""
+    """The time for all proofs together [s]. What is not decided by then is reported as undecided."""
     map: Seconds = 60.0
-    """Of a map, and of its certified part [s]."""
+    """The time for a map, and again for its certified part [s]."""
 
     @classmethod
     def each(cls, seconds: float) -> Self:
@@ -140,33 +140,33 @@ class Study(StudyTable):
     name: str
     """The folder's name."""
     title: Annotated[Name, Key("a title")]
-    """Of the report."""
+    """The report's title."""
     mechanism: Annotated[str, Key("one of")]
-    """Whose closure is solved."""
+    """The mechanism to study."""
     geometry: Annotated[dict[str, GeometryValue], Field(default_factory=dict), Table({})]
-    """What differs from the prototype's geometry [m, rad, m per turn]."""
+    """The geometry, where it differs from the prototype's [m, rad, m per turn]."""
     inertia: Annotated[InertiaTable, Table({})] = InertiaTable()
-    """What differs from the prototype's masses and drives."""
+    """The masses and drives, where they differ from the prototype's."""
     ranges: Annotated[Ranges, Field(default_factory=dict), Table({})]
-    """What differs from the prototype's joint ranges."""
+    """The joint ranges, where they differ from the prototype's."""
     region: Annotated[Annotated[BoxTable | CylinderTable, Field(discriminator="kind")], Table({})]
-    """The workspace: every pose that is to be good."""
+    """The workspace: the requirements must hold at every pose in it."""
     home: Annotated[HomeTable | None, table_of(HomeTable)] = None
-    """The pose that the robot works around; None for the middle of the region."""
+    """The pose that the robot works around. None takes the middle of the region."""
     fvi: Annotated[FviTable | None, table_of(FviTable)] = None
-    """What the FVI is taken from; None for the mechanism's own."""
+    """What the FVI compares. None takes the mechanism's own numbers."""
     optimise: Annotated[OptimiseTable | None, table_of(OptimiseTable)] = None
-    """What the synthesis may change; None for the geometry as it is given."""
+    """What the optimisation may change. None keeps the geometry as it is given."""
     dense_sample: Annotated[int, Field(ge=10_000, le=100_000_000), Key("a whole number from 10000 to 100000000")] = (
         1_000_000
     )
-    """About how many poses of the region the worst cases are searched on, before the descents."""
+    """About how many poses the dense search looks at, before it descends from the lowest ones."""
     requirement: Annotated[tuple[RequirementTable, ...], table_of(RequirementTable, rows=True)] = ()
-    """What must hold."""
+    """The requirements."""
     certify: Annotated[CertifyTable, table_of(CertifyTable)] = CertifyTable()
-    """What is proved."""
+    """What is proved over the region."""
     trajectory: Annotated[TrajectoryTable | None, table_of(TrajectoryTable)] = None
-    """What is timed; None for no cycle."""
+    """The cycle or path to time. None times nothing."""
     budget: Annotated[BudgetTable, table_of(BudgetTable)] = BudgetTable()
     """How long each stage may take."""
 

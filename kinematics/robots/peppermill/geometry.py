@@ -1,0 +1,72 @@
+"""The Peppermill's numbers: a geometry, masses and joint ranges that are ours, as its paper gives none."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from kinematics.machine import GeometryRecord, InertiaRecord, Pair, RodRanges, length, screw_pitch
+
+# Of the larger pitch. A rounding of a nut's height [m] turns theta by 2 pi / |p_1 - p_2| times as much [rad]: at this
+# difference theta is known to some 1e-8 rad, at 1e-11 it would be to 1e-3.
+_SAME_PITCH = 1e-6
+
+
+@dataclass(frozen=True)
+class PeppermillGeometry(GeometryRecord):
+    """The paper gives no dimensions: these serve a 0.4 x 0.4 x 0.1 m box about the origin with a turn either way.
+
+    Raises:
+        InvalidGeometry: also where the two pitches are equal to a millionth, the architecture singularity of (48).
+    """
+
+    proximal_lengths: tuple[float, ...] = length((0.20, 0.20), doc="r_i, drive axis to elbow")
+    distal_lengths: tuple[float, ...] = length((0.50, 0.50), doc="l_i, elbow to platform")
+    half_distance: float = length(0.50, doc="b_0, origin to either drive axis")
+    pitches: tuple[float, ...] = screw_pitch((0.10, -0.10), doc="p_i, of the platform's screws")
+    drive_pitch: float = screw_pitch(0.10, doc="p_c, of the drives' screws")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        first, second = self.pitches
+        if abs(first - second) <= _SAME_PITCH * max(abs(first), abs(second)):
+            reason = "equal ones are an architecture singularity, det A of (48) is zero in every pose"
+            raise self._invalid("pitches", self.pitches, f"two different pitches: {reason}")
+        if self.drive_pitch < 0.0:
+            raise self._invalid("drive_pitch", self.drive_pitch, "a pitch > 0 m/turn, as (A.2) has it")
+
+
+@dataclass(frozen=True)
+class PeppermillInertia(InertiaRecord):
+    """A light machine with 750 W servos: an assumption of this project, not a datasheet. SI units.
+
+    Attributes:
+        motor: inertia of each motor with its nut, about its axis.
+        carriage_mass, carriage: what slides along a drive axis, and its inertia about that axis.
+        proximal_mass, proximal_centre, proximal_factor: a proximal link's mass, its centre of mass c as a fraction of
+            r_i, and its inertia about the drive axis over m c^2.
+        distal_mass: a distal link with its pairs.
+        nut_mass: each nut of the platform's screws.
+        platform_mass, tool: platform with its screws and tool, and its inertia about e_z; the payload is a point at C.
+    """
+
+    motor: float = 3.0e-4
+    carriage_mass: float = 1.5
+    carriage: float = 1.0e-3
+    proximal_mass: float = 0.5
+    proximal_centre: float = 0.40
+    proximal_factor: float = 1.25
+    distal_mass: float = 0.4
+    nut_mass: float = 0.2
+    platform_mass: float = 0.8
+    tool: float = 6.0e-4
+
+
+@dataclass(frozen=True)
+class PeppermillRanges(RodRanges):
+    """Slides of 0.6 m and arms that turn 3 rad: an assumption of this project, the paper gives no limits.
+
+    `passive` limits what the elbows turn from a right angle, and the distal links' ends from upright.
+    """
+
+    joints: Pair | tuple[Pair, ...] = ((-0.3, 0.3), (-0.3, 0.3), (-1.2, 1.8), (0.4, 3.4))
+    passive: Pair = (1.2, 1.2)
