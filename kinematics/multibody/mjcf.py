@@ -12,7 +12,6 @@ from xml.etree import ElementTree as Xml
 
 import casadi as ca
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from kinematics.arrays import Array
 from kinematics.dynamics import GRAVITY
@@ -71,6 +70,8 @@ def _links(world: Xml.Element, cut: OpenTree) -> dict[str, Xml.Element]:
 
 def _inertial(link: Link, cut: OpenTree) -> Xml.Element:
     """Mass, centre and principal moments of the link's particles; moments below 1e-12 kg m^2 are raised to it."""
+    from scipy.spatial.transform import Rotation  # slow to import, and needed nowhere else
+
     own = [p for p in cut.particles() if p.link == link.name and p.mass > 0.0]
     masses = np.array([p.mass for p in own])
     points = np.array([np.array(cut.reference(p.point)).ravel() for p in own]).reshape(-1, 3)

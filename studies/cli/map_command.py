@@ -46,9 +46,7 @@ AtLeastOption = Annotated[
 CertifiedOption = Annotated[
     bool, typer.Option("--certified", help="Also prove: the largest cylinder's radius, or the plane's cells.")
 ]
-ToleranceOption = Annotated[
-    float, typer.Option("--tolerance", help="Stop refining below this relative change.")
-]
+ToleranceOption = Annotated[float, typer.Option("--tolerance", help="Stop refining below this relative change.")]
 
 
 def map_(

@@ -6,7 +6,6 @@ it may be replaced, and is removed once another question's files of its kind are
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import json
 import os
@@ -17,6 +16,11 @@ from pathlib import Path, PurePosixPath
 
 from kinematics import LinkwrightError
 from trajectory import CannotWrite, require_writable, write_files
+
+try:
+    import fcntl
+except ImportError:  # on Windows, where two commands at once are not kept apart
+    fcntl = None  # type: ignore[assignment]
 
 LIST = "linkwright_files.json"
 _FORMAT = "linkwright files 1"
@@ -122,14 +126,16 @@ class OutputFolder:
         missing = [path for path in (self.path, *self.path.parents) if not path.exists()]
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            handle = os.open(self.path, os.O_RDONLY)
+            handle = None if fcntl is None else os.open(self.path, os.O_RDONLY)
         except OSError as error:
             raise CannotWrite(self.path, error.strerror or str(error)) from error
         try:
-            fcntl.flock(handle, fcntl.LOCK_EX)
+            if handle is not None:
+                fcntl.flock(handle, fcntl.LOCK_EX)
             yield
         finally:
-            os.close(handle)
+            if handle is not None:
+                os.close(handle)
             for path in missing:
                 with suppress(OSError):  # not empty
                     path.rmdir()

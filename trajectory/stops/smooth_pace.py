@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.optimize import linprog
-from scipy.sparse import coo_array
 
 from kinematics import Array
 from trajectory.stops.smooth_braking_rows import JerkRows, LinearRows, Rows, tangent_rows
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 INSTANTS = np.linspace(0.0, 1.0, 9)  # of each interval, where its rows stand
 _LOWEST = 0.01  # pace: slower ones have their tangents here
@@ -91,6 +92,8 @@ def _programme(rows: LinearRows, active: Array, pace: Array, tau: Array) -> Pace
     x falls by twice the integral of b, which for a b that is linear in time, as it is where the jerk is constant, is
     weighted by the pace: more at an interval's faster end.
     """
+    from scipy.optimize import linprog  # slow to import, as scipy.sparse is
+
     n, length = tau.size - 1, tau[-1] - tau[0]
     steps = np.diff(tau) / length
     k, instant, _ = np.nonzero(active)
@@ -122,8 +125,10 @@ def _programme(rows: LinearRows, active: Array, pace: Array, tau: Array) -> Pace
     return Pace(tau, x, b / length)
 
 
-def _matrix(*parts: tuple[Array, Array], columns: int) -> coo_array:
+def _matrix(*parts: tuple[Array, Array], columns: int) -> csr_array:
     """One row for each entry of the parts: values and their columns."""
+    from scipy.sparse import coo_array
+
     values, where = (np.concatenate(part) for part in zip(*parts, strict=True))
     rows = np.tile(np.arange(parts[0][0].size), len(parts))
     return coo_array((values, (rows, where)), shape=(parts[0][0].size, columns)).tocsr()

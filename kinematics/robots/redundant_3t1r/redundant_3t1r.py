@@ -15,7 +15,6 @@ from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
-from scipy.linalg import block_diag
 
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
@@ -66,7 +65,9 @@ class Redundant3T1R(RodLevel):
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=1.0, speed=0.5, force=0.5)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta")
     # (51) of Krut et al.: single rods stay, a parallelogram gives its rods' mean and, last, their difference.
-    row_combinations = block_diag(np.eye(2), [[0.5, 0.5]], [[0.5, 0.5]], np.eye(2), np.zeros((2, 0)))
+    row_combinations = np.zeros((8, 8))
+    row_combinations[[0, 1, 4, 5], [0, 1, 6, 7]] = 1.0
+    row_combinations[2:4, 2:6] = np.kron(np.eye(2), [0.5, 0.5])
     row_combinations[6:, 2:6] = np.kron(np.eye(2), [-1.0, 1.0])
     column_combinations = np.eye(6)[:, [0, 1, 2, 5, 3, 4]]
 
