@@ -3,7 +3,7 @@
     certify(robot, region, "fvi", at_least=1.0).status  ->  "proved", "refuted" or "undecided"
 
 What a proof rests on, beside the lemmas of `claims` and the mean-value theorem: IEEE 754 arithmetic, the accuracy that
-`kinematics.interval` assumes of the sine, cosine and arctangent, and CasADi's algebra, which builds the expressions and
+`kinematics.evaluation` assumes of the sine, cosine and arctangent, and CasADi's algebra, which builds the expressions and
 their derivatives. What is proved is a statement about real numbers: geometry, region and bound are the exact values of
 their doubles, and so are the constants written into the model (2 pi among them, and products of two such constants,
 which CasADi rounds once). A region's boundary counts as inside. Plain evaluation only chooses signs, scalings, cuts and
@@ -51,10 +51,10 @@ class Certificate:
         counterexample: (n,) a pose where the margin is below the bound beyond rounding, or that a limb cannot reach.
         within_reach: whether every limb reaches the counterexample; True without one.
         boxes: how many boxes were bounded.
-        codes: (nodes,) the tree of boxes by level; see `design.tree`. Empty unless proved.
+        codes: (nodes,) the tree of boxes by level; see `box_tree`. Empty unless proved.
         left: (k, 2, n) lower and upper bounds of the boxes that were not proved.
         mirrors: coordinates whose signs change together without changing the margin; of each only the side where its
-            first one is at least 0 was looked at. See `design.symmetry`.
+            first one is at least 0 was looked at. See `symmetry`.
     """
 
     mechanism: str
