@@ -84,6 +84,7 @@ def test_a_motion_that_leaves_the_region_between_its_knots_only_is_found() -> No
     assert found.pose[0] == pytest.approx(peak, abs=1e-6)
 
 
+@pytest.mark.long
 def test_the_free_law_is_given_the_region_and_a_motion_that_leaves_it_is_refused_with_its_margin(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

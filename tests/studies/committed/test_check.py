@@ -23,6 +23,7 @@ from studies.errors import StudyError
 from studies.stages.pipeline import run
 from studies.stages.proofs import Claim, question_of
 from studies.study_file.locate import study_names
+from tests.sizes import few_or_many
 from tests.studies.command_line import SMALL, SmallRun, copy_of, linkwright
 from trajectory import write_files
 
@@ -62,7 +63,11 @@ def tampered(value: Any) -> Any:
     return value + 1 if isinstance(value, int) else value * 1.001 + 1e-4
 
 
-def test_no_entry_of_an_optimum_can_be_changed_or_removed_unnoticed(small_run: SmallRun, tmp_path: Path) -> None:
+@few_or_many(1, 100)
+def test_no_entry_of_an_optimum_can_be_changed_or_removed_unnoticed(
+    small_run: SmallRun, tmp_path: Path, count: int
+) -> None:
+    """Each geometry that differs is computed anew, so only the first `count` are."""
     file = copy_of(small_run[0], tmp_path)
     original = tomllib.loads(file.read_text())
     study = load_study(tmp_path / "study.toml")
@@ -83,6 +88,8 @@ def test_no_entry_of_an_optimum_can_be_changed_or_removed_unnoticed(small_run: S
             same = claimed.robot(study).geometry == outcome.robot.geometry
         except StudyError:
             continue  # unusable, and said so
+        if not same and (count := count - 1) < 0:
+            continue
         if not same:
             rows = check_study(tmp_path / "study.toml")
         elif path[0] == "certificate":

@@ -56,6 +56,7 @@ def test_the_tool_keeps_clear_of_the_arch_and_a_shrunken_motion_does_not(path: A
         _require_clear(Arch.of(path), low)
 
 
+@pytest.mark.long
 def test_the_thermal_limit_the_speed_torque_line_and_the_ranges_are_kept_too(robot: Heli4, path: AdeptCycle) -> None:
     limits = replace(JERK, rms_torque=95.0, stall_torque=180.0, no_load_speed=40.0, position=(0.8, 2.6))
     found = free_motion(robot, path, limits, 1.0, 16)
@@ -65,6 +66,7 @@ def test_the_thermal_limit_the_speed_torque_line_and_the_ranges_are_kept_too(rob
     assert ratios["rms torque"] > 0.99
 
 
+@pytest.mark.long
 def test_the_way_back_takes_as_long_and_starts_where_the_way_there_ends(
     robot: Heli4, path: AdeptCycle, motion: PoseSpline
 ) -> None:
@@ -73,6 +75,7 @@ def test_the_way_back_takes_as_long_and_starts_where_the_way_there_ends(
     assert back.at(np.array(0.0)).pose == pytest.approx(motion.at(np.array(motion.duration)).pose, abs=1e-9)
 
 
+@pytest.mark.long
 def test_it_stays_inside_its_bounds_between_the_knots_too(robot: Heli4, path: AdeptCycle, motion: PoseSpline) -> None:
     """Bounds that the free motion without them leaves: above, in its turn, and through the circle."""
     bounds = PoseBounds((-1.0, -1.0, -0.8, 0.0), (1.0, 1.0, -0.75, math.pi), radius=0.153)
