@@ -4,8 +4,8 @@
 
 What a proof rests on, beside the margins' lemmas and the mean-value theorem: IEEE 754 arithmetic, the accuracy that
 `kinematics.evaluation` assumes of the sine, cosine and arctangent, and CasADi's algebra, which builds the expressions
-and their derivatives. What is proved is a statement about real numbers: geometry, region and bound are the exact values of
-their doubles, and so are the constants written into the model (2 pi among them, and products of two such constants,
+and their derivatives. What is proved is a statement about real numbers: geometry, region and bound are the exact values
+of their doubles, and so are the constants written into the model (2 pi among them, and products of two such constants,
 which CasADi rounds once). A region's boundary counts as inside. Plain evaluation only chooses signs, scalings, cuts and
 counterexamples.
 """
