@@ -14,6 +14,7 @@ _FAITHFUL = 3e-4  # of a limit of jerk: how far the law's may be from the motion
 _HALVINGS = 40
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # exact for the slope of S5, of degree 4
 _STEEPEST = 1.35  # w times an interval's size over x; from 1.5 on a cubic may pass below 0
+_LOWEST = 0.01  # of x between two knots, over the lower of theirs
 
 
 class SquaredRate(NamedTuple):
@@ -52,10 +53,13 @@ class SquaredRate(NamedTuple):
         return SquaredRate(knots, values)
 
     def finer(self, parts: int) -> SquaredRate:
-        """The same on so many times as many intervals."""
+        """The same on so many times as many intervals; x stays above 0 where a steep cubic dips below it."""
         inside = self.knots[:-1, None] + np.diff(self.knots)[:, None] * (np.arange(parts) / parts)
-        knots = np.append(inside.ravel(), 1.0)
-        return SquaredRate(knots, self.at(knots))
+        knots, x = np.append(inside.ravel(), 1.0), self.values[::2]
+        values = self.at(knots)
+        lowest = np.repeat(_LOWEST * np.minimum(x[1:], x[:-1]), parts)
+        values[:-2:2] = np.maximum(values[:-2:2], lowest)
+        return SquaredRate(knots, values)
 
     def times(self) -> Array:
         """(n + 1,) about, at the knots."""
@@ -79,6 +83,8 @@ def law_in_time(motion: SquaredRate, length: float, unit: float, per_jerk: Array
     """
     knots = motion.knots
     for _ in range(_HALVINGS):
+        if not (motion.at(knots)[::2] > 0.0).all():
+            return None
         found = _quartics(knots, motion, length, unit)
         own = _third_derivatives(knots, motion, length, unit)
         away = np.abs(found.jerks - own).max(axis=0) * np.interp((knots[1:] + knots[:-1]) / 2, motion.knots, per_jerk)
