@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import casadi as ca
 
 from kinematics.arrays import Array
-from kinematics.machine import Bodies, GeometryRecord, InertiaRecord, JointRanges, PassiveJoint
+from kinematics.machine import Bodies, GeometryRecord, InertiaRecord, JointRanges, PassiveJoint, Reference, Tree
 from kinematics.model.indices import FviBounds
 from kinematics.model.margin import Margin
 
@@ -82,6 +82,20 @@ class Definition(ABC):
     @abstractmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
         """Named polylines (3, k) that draw the mechanism: base, arms, rods, platform."""
+
+    def link_tree(
+        self,
+        pose: ca.SX,  # noqa: ARG002
+        joints: ca.SX,  # noqa: ARG002
+        g: SimpleNamespace,  # noqa: ARG002
+        reference: Reference,  # noqa: ARG002
+    ) -> Tree | None:
+        """The links and their joints, for simulators; None where they follow from the bodies.
+
+        They do where each link is moved by one driven joint, or by the pose alone: x, y, z slide it, and theta, or yaw,
+        pitch and roll, turn it about the tool point.
+        """
+        return None
 
     def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:  # noqa: ARG002
         """The joints at the rods' ends; where there are any, `Ranges` limits them and `PASSIVE_JOINT` is a margin."""

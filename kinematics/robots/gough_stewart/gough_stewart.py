@@ -20,6 +20,7 @@ from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.model import FviBounds, Mechanism, Mode, Model, by_name
 from kinematics.robots.gough_stewart.forward import ForwardSolution, assembly_modes, matched_pose
 from kinematics.robots.gough_stewart.geometry import GoughStewartGeometry, GoughStewartInertia, GoughStewartRanges
+from kinematics.robots.gough_stewart.links import links
 from kinematics.robots.gough_stewart.six_legs import SixLegs
 
 _SCREW = ("x", "y", "z", "about x", "about y", "about z")
@@ -218,6 +219,8 @@ class GoughStewart(SixLegs):
             for end, held in enumerate((axes, turned))
             for i in range(6)
         ]
+
+    link_tree = links
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Screws driven by the joints; rods, platform and payload carried by the pose."""
