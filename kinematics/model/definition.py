@@ -36,6 +36,12 @@ class Definition(ABC):
     mirrors: ClassVar[tuple[tuple[str, ...], ...]] = ()  # coordinates whose signs change together: a mirror image
     margins: ClassVar[Mapping[str, Margin]]  # by name: `by_name(*STANDARD, ...)`, and what the mechanism adds
 
+    @classmethod
+    def lacking(cls) -> tuple[str, ...]:
+        """The hooks without a default that the class does not write."""
+        data = (name for name in Definition.__annotations__ if not hasattr(cls, name))
+        return tuple(sorted({*cls.__abstractmethods__, *data}))
+
     @staticmethod
     @abstractmethod
     def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from studies.building.geometry_fields import GeometryField, geometry_fields, shape
 from studies.building.hardware import hardware_faults, hardware_tables, joint_unit, subtable
-from studies.building.mechanisms import GeometryField, geometry_fields, shape
 from studies.errors import KeyPath
 from studies.study_file import (
     REGION_KINDS,

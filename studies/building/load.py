@@ -3,58 +3,60 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import ValidationError
 
 from kinematics import InvalidGeometry
 from studies.building.against_mechanism import faults, study_table
-from studies.building.mechanisms import mechanism_class, mechanism_names
+from studies.building.mechanisms import MechanismRefused, NamedMechanism, mechanism_named
 from studies.building.objects import path_of
 from studies.errors import KeyPath, Problem, StudyError, spelled
-from studies.study_file import Conversion, Key, Study, Table, TomlFile, WaypointTable, read_toml, table_of
+from studies.study_file import Conversion, Finding, Key, Study, Table, TomlFile, WaypointTable, table_of
 from trajectory import InvalidPath, read_waypoints
-
-if TYPE_CHECKING:
-    from kinematics import Mechanism
 
 # Without a known mechanism nothing can be said about these.
 _OF_THE_MECHANISM = ("geometry", "inertia", "ranges", "region", "home", "optimise", "certify", "requirement")
 
 
-def load_study(path: Path) -> Study:
-    """Read the study file at `path`; all values of the result are in SI and radians.
+def load_study(file: TomlFile, allow_code: bool = False) -> Study:
+    """Check a study file; all values of the result are in SI and radians.
 
-    Raises StudyError, which holds every fault with its key and line.
+    Args:
+        file: as `read_toml` reads it.
+        allow_code: whether the module that the study may name for its mechanism may run.
+
+    Raises:
+        StudyError: it holds every fault with its key and line.
+        WaypointFileError: a file of waypoints that the study names cannot be used.
     """
-    file = read_toml(path)
-    mechanism = _mechanism(file.data.get("mechanism"))
-    conversion = Conversion()
-    raw = file.data
-    if mechanism:
+    conversion, raw = Conversion(), file.data
+    named = _mechanism(file, conversion, allow_code)
+    if named is not None:
+        mechanism = named.mechanism_class
         table = study_table(mechanism, raw)
         data = conversion.to_si(raw, table)
         wrong = set(faults(data, mechanism))
     else:
-        table = table_of(Study).updated({"mechanism": Key("one of", choices=mechanism_names())})
+        table = table_of(Study)
         data = conversion.to_si(_without_the_mechanism_s(raw), table)
         wrong = {("mechanism",)}
         conversion.reported.update((name,) for name in _OF_THE_MECHANISM)
     try:
-        study = Study.model_validate(data | {"name": path.resolve().parent.name})
+        of_code = {} if named is None else named._asdict()
+        study = Study.model_validate(data | of_code | {"name": file.path.resolve().parent.name})
     except ValidationError as error:
         wrong.update(_invalid(error, table))
     problems = _problems(file, table, conversion, wrong)
     if problems:
         raise StudyError(problems)
-    assert mechanism is not None
+    assert named is not None
     try:
-        mechanism.Geometry(**study.geometry)
+        named.mechanism_class.Geometry(**study.geometry)
     except InvalidGeometry as error:
         key = conversion.spelling.get(("geometry", error.field), ("geometry",))
         raise StudyError([file.problem(key, spelled(file.value(key)), error.expected)]) from error
-    return _with_waypoints(study, file, mechanism.pose_names)
+    return _with_waypoints(study, file, named.mechanism_class.pose_names)
 
 
 def _with_waypoints(study: Study, file: TomlFile, pose_names: tuple[str, ...]) -> Study:
@@ -106,13 +108,23 @@ def _without_the_mechanism_s(raw: dict[str, Any]) -> dict[str, Any]:
     return data
 
 
-def _mechanism(name: object) -> type[Mechanism] | None:
-    return mechanism_class(name) if isinstance(name, str) and name in mechanism_names() else None
+def _mechanism(file: TomlFile, conversion: Conversion, allow_code: bool) -> NamedMechanism | None:
+    """What the study names; None where none can be had, and a finding where the key's own words say too little."""
+    name = file.data.get("mechanism")
+    if not isinstance(name, str):
+        return None
+    try:
+        return mechanism_named(name, file.path.resolve().parent, allow_code)
+    except MechanismRefused as error:
+        conversion.findings.append(Finding(("mechanism",), error.found, error.expected))
+        return None
 
 
 def _invalid(error: ValidationError, table: Table) -> Iterator[KeyPath]:
     """The SI paths that the models reject."""
     for detail in error.errors(include_url=False, include_context=False, include_input=False):
+        if detail["loc"] == ("mechanism_class",):
+            continue  # what is wrong with the mechanism is told at its name
         path: list[str | int] = []
         node = table
         for part in detail["loc"]:

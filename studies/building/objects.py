@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import partial
-from pathlib import Path as FilePath
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,6 @@ from design import Bounds, Box, Cylinder, Problem, Region, Requirement, SumLimit
 from kinematics import Array, FviBounds, GeometryRecord, InvalidValue, Mechanism, UnreachablePose, to_actuators
 from studies.building.hardware import inertia_of, ranges_of
 from studies.building.inside_region import leaving
-from studies.building.mechanisms import mechanism_class
 from studies.errors import HomeOutOfReach, StudyError
 from studies.study_file import (
     ApproachTable,
@@ -22,9 +20,9 @@ from studies.study_file import (
     DriveTable,
     LimitsTable,
     Study,
+    TomlFile,
     TrajectoryTable,
     adept_cycle,
-    read_toml,
     refused_field,
     travelled,
 )
@@ -36,7 +34,7 @@ OBJECTIVE = "fvi"
 
 def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
     """The study's mechanism, masses and joint ranges; `geometry` in place of the prototype with the study's changes."""
-    kind = mechanism_class(study.mechanism)
+    kind = study.mechanism_class
     joints = None if study.home is None else study.home.joints
     return kind(
         geometry or kind.Geometry(**study.geometry),
@@ -78,7 +76,7 @@ def region_of(study: Study) -> Region:
 def fvi_bounds_of(study: Study) -> FviBounds:
     """What the FVI is measured against: the study's, or the mechanism's own."""
     if study.fvi is None:
-        return mechanism_class(study.mechanism).fvi_bounds
+        return study.mechanism_class.fvi_bounds
     f = study.fvi
     return FviBounds(f.joint_speed, f.joint_effort, f.speed, f.force)
 
@@ -119,7 +117,7 @@ def path_of(asked: TrajectoryTable, pose_names: tuple[str, ...]) -> Path:
     return RoundedPath(pose_names, poses, tuple(w.blend for w in waypoints[1:-1]))
 
 
-def require_cycle_inside(study: Study, file: FilePath) -> None:
+def require_cycle_inside(study: Study, file: TomlFile) -> None:
     """Prove that the cycle's path stays where the geometry is verified.
 
     Raises:
@@ -127,14 +125,13 @@ def require_cycle_inside(study: Study, file: FilePath) -> None:
     """
     if study.trajectory is None:
         return
-    names = mechanism_class(study.mechanism).pose_names
+    names = study.mechanism_class.pose_names
     path = path_of(study.trajectory, names)
     if (found := leaving(region_of(study), path, names)) is not None:
         pose = ", ".join(f"{v:.4g}" for v in found.pose)
-        read = read_toml(file)
-        key = travelled(read)
+        key = travelled(file)
         expected = f"a {key[-1]} inside the region, {region_of(study)}"
-        raise StudyError([read.problem(key, f"the pose ({pose}) on it", expected)])
+        raise StudyError([file.problem(key, f"the pose ({pose}) on it", expected)])
 
 
 def drive_of(drive: DriveTable) -> Drive:
@@ -142,7 +139,7 @@ def drive_of(drive: DriveTable) -> Drive:
     return Drive(drive.axes, drive.increments, drive.encoder_gear)
 
 
-def drive_file_names(study: Study, file: FilePath, asked_for: Sequence[str] | None) -> list[str]:
+def drive_file_names(study: Study, file: TomlFile, asked_for: Sequence[str] | None) -> list[str]:
     """The drive files' names, from writing those of the cycle's path to nowhere before hours of work go into them.
 
     Args:
@@ -162,9 +159,8 @@ def drive_file_names(study: Study, file: FilePath, asked_for: Sequence[str] | No
     except InvalidValue as error:
         by = f"for --format {' --format '.join(asked_for)}" if asked_for else ""
         key = ("trajectory",) if asked_for else ("trajectory", "files")
-        read = read_toml(file)
         found = f"{error.what} {error.found} {by}".strip()
-        raise StudyError([refused_field(read, error, by) or read.problem(key, found, error.expected)]) from error
+        raise StudyError([refused_field(file, error, by) or file.problem(key, found, error.expected)]) from error
 
 
 def _along(robot: Mechanism, path: Path, period: float) -> Setpoints:
@@ -204,7 +200,7 @@ def timing_of(study: Study) -> tuple[Timing, tuple[str, ...]]:
 def pose_bounds_of(study: Study) -> PoseBounds:
     """The study's region, as the free law takes it."""
     region = region_of(study)
-    low, high = zip(*(region.intervals[name] for name in mechanism_class(study.mechanism).pose_names), strict=True)
+    low, high = zip(*(region.intervals[name] for name in study.mechanism_class.pose_names), strict=True)
     return PoseBounds(low, high, region.radius if isinstance(region, Cylinder) else math.inf)
 
 

@@ -27,6 +27,9 @@ FormatOption = Annotated[
 ForceOption = Annotated[
     bool, typer.Option("--force", help="Replace files that this program did not write, or that were changed since.")
 ]
+AllowCodeOption = Annotated[
+    bool, typer.Option("--allow-code", help="Run the Python module that the study names for its mechanism.")
+]
 SecondsOption = Annotated[
     float | None,
     typer.Option("--seconds", help="What each stage may take, in place of the study's table \\[budget]."),

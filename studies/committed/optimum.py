@@ -11,7 +11,7 @@ import tomli_w
 
 from design import Certificate
 from kinematics import InvalidGeometry, Mechanism
-from studies.building import mechanism_class, robot_of
+from studies.building import robot_of
 from studies.committed.committed_proofs import known_certificates, proof_entries
 from studies.errors import KeyPath, Problem, StudyError, spelled
 from studies.stages import Outcome
@@ -73,7 +73,7 @@ class Optimum:
         """
         if self.data["mechanism"] != study.mechanism:
             raise self.fault(("mechanism",), spelled(self.data["mechanism"]), f"the study's, {study.mechanism}")
-        kind = mechanism_class(study.mechanism)
+        kind = study.mechanism_class
         given, known = self.data["geometry"], kind.Geometry.sizes()
         for field in given:
             if field not in known:

@@ -19,7 +19,7 @@ from studies.study_file.study import (
 from studies.study_file.table import table_of
 from studies.study_file.toml_file import TomlFile, read_toml
 from studies.study_file.trajectory_tables import LAWS, ApproachTable, DriveTable, LimitsTable, TrajectoryTable
-from studies.study_file.units import LARGEST, Conversion, Dimension, Key, Table
+from studies.study_file.units import LARGEST, Conversion, Dimension, Finding, Key, Table
 
 __all__ = [
     "FILE",
@@ -36,6 +36,7 @@ __all__ = [
     "CylinderTable",
     "Dimension",
     "DriveTable",
+    "Finding",
     "InertiaTable",
     "Key",
     "LimitsTable",

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
 from kinematics import InvalidValue, LinkwrightError, UnreachablePose
 from studies.errors import ApproachFailed, HomeOutOfReach, KeyPath, Problem, StudyError, dotted, spelled
-from studies.study_file.toml_file import TomlFile, read_toml
+from studies.study_file.toml_file import TomlFile
 from trajectory import LimitsExceeded, PathBeyondLimit, PathRefused, RoughPath, TimingFailed
 
 _RECORDS: dict[str, KeyPath] = {
@@ -31,7 +30,7 @@ class StudyFailed(LinkwrightError):
 
 
 @contextmanager
-def told_at_key(study_file: Path) -> Iterator[None]:
+def told_at_key(file: TomlFile) -> Iterator[None]:
     """Raise the errors of paths, timing, limits and drives again, with their place in the study file.
 
     Raises:
@@ -41,15 +40,12 @@ def told_at_key(study_file: Path) -> Iterator[None]:
     try:
         yield
     except ApproachFailed as error:
-        file = read_toml(study_file)
         raise StudyFailed(file, ("trajectory", "approach"), error) from error
     except HomeOutOfReach as error:
-        raise _of_home(read_toml(study_file), error) from error
+        raise _of_home(file, error) from error
     except PathBeyondLimit as error:
-        file = read_toml(study_file)
         raise StudyFailed(file, _spelling(file, ("trajectory", "limits", error.limit)), error) from error
     except (InvalidValue, *_OF_THE_PATH, *_OF_THE_LIMITS) as error:
-        file = read_toml(study_file)
         if isinstance(error, InvalidValue):
             if (problem := refused_field(file, error)) is not None:
                 raise StudyError([problem]) from error
