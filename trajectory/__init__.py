@@ -8,7 +8,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from trajectory.cycles import Cycle, Piece, Repaired, Timing, repair, there_and_back
+from trajectory.cycles import Cycle, Piece, Repaired, repair, there_and_back
 from trajectory.errors import (
     InvalidPath,
     LimitsExceeded,
@@ -21,6 +21,7 @@ from trajectory.errors import (
     WaypointFileError,
 )
 from trajectory.files import CannotWrite, require_writable, write_files
+from trajectory.laws import LAWS, Law, TimingLaw, law_named
 from trajectory.laws.bounds import lower_bound
 from trajectory.limits import Limits
 from trajectory.motions import (
@@ -74,12 +75,14 @@ def __getattr__(name: str) -> Any:
 
 
 __all__ = [
+    "LAWS",
     "STANDARD_SIZES",
     "AdeptCycle",
     "CannotWrite",
     "Cycle",
     "EmergencyStop",
     "InvalidPath",
+    "Law",
     "Limits",
     "LimitsExceeded",
     "Motion",
@@ -105,8 +108,8 @@ __all__ = [
     "TimeLaw",
     "TimedMotion",
     "TimedPath",
-    "Timing",
     "TimingFailed",
+    "TimingLaw",
     "Verification",
     "Way",
     "WaypointFileError",
@@ -116,6 +119,7 @@ __all__ = [
     "free_motion",
     "in_si",
     "jerk_limited",
+    "law_named",
     "lower_bound",
     "motion_of",
     "pieces",

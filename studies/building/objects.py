@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,7 +25,7 @@ from studies.study_file import (
     refused_field,
     travelled,
 )
-from trajectory import Limits, Path, PoseBounds, RoundedPath, Setpoints, Timing
+from trajectory import Limits, Path, PoseBounds, RoundedPath, Setpoints, TimingLaw, law_named
 from trajectory.drive_files import Drive, drive_files
 
 OBJECTIVE = "fvi"
@@ -177,24 +176,12 @@ def limits_of(limits: LimitsTable) -> Limits:
     return Limits(**limits.model_dump())
 
 
-def timing_of(study: Study) -> tuple[Timing, tuple[str, ...]]:
-    """The study's timing law, and the limits that it is run without although the study may set them.
-
-    Only jerk: it makes a motion smooth, while what else a law cannot keep rates the drives, and is refused.
-    """
+def timing_of(study: Study) -> tuple[TimingLaw, tuple[str, ...]]:
+    """The study's timing law, and the limits that it is run without although the study may set them."""
     asked = study.trajectory
     assert asked is not None
-    if asked.law == "toppra":
-        from trajectory import time_optimal
-
-        return partial(time_optimal, intervals=asked.grid), ("jerk",)
-    if asked.law == "free":
-        from trajectory import free_motion
-
-        return partial(free_motion, within=pose_bounds_of(study)), ()
-    from trajectory import jerk_limited
-
-    return jerk_limited, ()
+    law = law_named(asked.law)
+    return law.timing(asked.grid, pose_bounds_of(study)), law.leaves_out
 
 
 def pose_bounds_of(study: Study) -> PoseBounds:

@@ -33,7 +33,7 @@ app = typer.Typer(
 
 @app.command("list")
 def list_(json: JsonOption = False) -> None:
-    """List the mechanisms and the studies that come with Linkwright.
+    """List the mechanisms, the studies, the timing laws and the formats of drive files.
 
     linkwright list --json
     """
@@ -41,15 +41,21 @@ def list_(json: JsonOption = False) -> None:
     from studies.building import installed_mechanisms, load_study
     from studies.cli import console
     from studies.study_file import read_toml, study_names, study_path
+    from trajectory import LAWS
+    from trajectory.drive_files import FORMATS
 
     titles = {name: load_study(read_toml(study_path(name))).title for name in study_names()}
     mechanisms = {name: (kind.__doc__ or "").splitlines()[0] for name, kind in MECHANISMS.items()}
     mechanisms |= {name: f"installed: {point.value}" for name, point in installed_mechanisms().items()}
+    laws = {law.name: law.title for law in LAWS.values()}
+    formats = {name: form.title for name, form in FORMATS.items()}
     if json:
-        console.print_json({"mechanisms": mechanisms, "studies": titles})
+        console.print_json({"mechanisms": mechanisms, "studies": titles, "laws": laws, "formats": formats})
         return
     console.print_table("Mechanisms", ("name", "pose and joints"), list(mechanisms.items()))
     console.print_table("Studies", ("name", "question"), list(titles.items()))
+    console.print_table("Timing laws", ("--law", "what it does"), list(laws.items()))
+    console.print_table("Drive files", ("--format", "what it writes"), list(formats.items()))
 
 
 app.command()(run)
@@ -108,7 +114,7 @@ def trajectory(
     ] = None,
     prototype: PrototypeOption = False,
     law: Annotated[
-        str | None, typer.Option("--law", help="Timing law, in place of the study's: jerk, toppra or free.")
+        str | None, typer.Option("--law", help="Timing law, in place of the study's (see `linkwright list`).")
     ] = None,
     formats: FormatOption = None,
     force: ForceOption = False,
@@ -124,12 +130,12 @@ def trajectory(
     from studies.cli import console
     from studies.results import Written, write_setpoints
     from studies.stages import require_on_cycle, stage, time_cycle
-    from studies.study_file import LAWS, told_at_key
+    from studies.study_file import told_at_key
+    from trajectory import LAWS
+    from trajectory.drive_files import format_named
 
     if law is not None and law not in LAWS:
         raise InvalidValue("--law", law, f"one of {', '.join(LAWS)}")
-    from trajectory.drive_files import format_named
-
     if formats and out is None:
         raise InvalidValue("--format", ", ".join(formats), "--out with it, the folder for the files")
     for name in formats or ():

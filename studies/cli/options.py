@@ -21,7 +21,7 @@ FormatOption = Annotated[
     list[str] | None,
     typer.Option(
         "--format",
-        help="With --out: csv, ros2, cia402, zaber, xps or pmac; once for each (default: the study's own, or csv)",
+        help="With --out: a format (see `linkwright list`); once for each (default: the study's own, or csv).",
     ),
 ]
 ForceOption = Annotated[

@@ -18,14 +18,13 @@ from studies.study_file.study import (
 )
 from studies.study_file.table import table_of
 from studies.study_file.toml_file import TomlFile, read_toml
-from studies.study_file.trajectory_tables import LAWS, ApproachTable, DriveTable, LimitsTable, TrajectoryTable
+from studies.study_file.trajectory_tables import ApproachTable, DriveTable, LimitsTable, TrajectoryTable
 from studies.study_file.units import LARGEST, Conversion, Dimension, Finding, Key, Table
 
 __all__ = [
     "FILE",
     "FOLDER",
     "LARGEST",
-    "LAWS",
     "REGION_KINDS",
     "ApproachTable",
     "BoxTable",

@@ -1,12 +1,14 @@
 """How a study's cycle is timed: limits, law, approach, and the files for the drives."""
 
-from typing import Annotated, Literal, get_args
+from typing import Annotated
 
 from pydantic import Field, ValidationInfo, field_validator
 
 from studies.study_file.path_tables import CycleTable, WaypointPathTable
-from studies.study_file.table import Interval, Name, PerJoint, Positive, StudyTable, table_of
+from studies.study_file.table import Interval, Name, PerJoint, Positive, StudyTable, one_of, table_of
 from studies.study_file.units import Dimension, Key
+from trajectory import LAWS
+from trajectory.drive_files import FORMATS
 
 
 class LimitsTable(StudyTable):
@@ -48,10 +50,7 @@ class LimitsTable(StudyTable):
         return speed
 
 
-File = Literal["csv", "ros2", "cia402", "zaber", "xps", "pmac"]
-FILES = get_args(File)
 Increments = Annotated[int, Field(gt=0)]
-LAWS = ("jerk", "toppra", "free")
 
 
 class ApproachTable(StudyTable):
@@ -85,7 +84,7 @@ class DriveTable(StudyTable):
 class TrajectoryTable(StudyTable):
     """How the cycle is timed, and how its set-points are sampled."""
 
-    law: Annotated[Literal["jerk", "toppra", "free"], Key("one of", choices=LAWS)] = "jerk"
+    law: Annotated[str, one_of(LAWS), Key("one of", choices=tuple(LAWS))] = "jerk"
     """How it is timed; `toppra` keeps no jerk limit, `free` finds the path too."""
     grid: Annotated[int, Field(ge=1000, le=1_000_000), Key("a whole number from 1000 to 1000000")] = 2000
     """Points along the path, at first: the law `toppra` adds what it needs."""
@@ -99,7 +98,10 @@ class TrajectoryTable(StudyTable):
     """What the drives and the tool may do."""
     approach: Annotated[ApproachTable | None, table_of(ApproachTable)] = None
     """The move from home to the start; None leaves it out."""
-    files: Annotated[Annotated[tuple[File, ...], Field(min_length=1)], Key("a list out of", choices=FILES)] = ("csv",)
+    files: Annotated[
+        Annotated[tuple[Annotated[str, one_of(FORMATS)], ...], Field(min_length=1)],
+        Key("a list out of", choices=tuple(FORMATS)),
+    ] = ("csv",)
     """Formats of the set-points."""
     drive: Annotated[DriveTable, table_of(DriveTable)] = DriveTable()
     """What the drive files need of the machine."""

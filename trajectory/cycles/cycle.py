@@ -6,7 +6,6 @@ Where the tangent jumps, as at the turning point, no law may pass at speed: ther
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,12 +14,12 @@ import numpy as np
 from kinematics import InvalidValue, Mechanism
 from trajectory.cycles.least_stretch import Repaired, repair
 from trajectory.errors import LimitsExceeded
+from trajectory.laws import TimingLaw
 from trajectory.limits import Limits
 from trajectory.motions import InTime, PoseSpline, TimedMotion
 from trajectory.paths import Path, Reversed, pieces, places
 from trajectory.verification import PathCertificate, Verification, Way, certify_path, verify, worst_of
 
-Timing = Callable[[Mechanism, Path, Limits, float], TimedMotion]
 _SAME = 1e-9  # rad, or of the path's length: no further apart are two poses the same
 
 
@@ -120,7 +119,7 @@ def there_and_back(
     path: Path,
     limits: Limits,
     payload: float,
-    timing: Timing,
+    timing: TimingLaw,
     payload_back: float | None = None,
     cannot_keep: tuple[str, ...] = (),
 ) -> Cycle:

@@ -1,4 +1,4 @@
-"""The example of docs/new_mechanism.md, in a module beside a study, is used from it; it runs only where it is allowed."""
+"""The example of docs/new_mechanism.md, in a module beside a study, is used from it, and runs only where it may."""
 
 from __future__ import annotations
 
