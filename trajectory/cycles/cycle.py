@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from kinematics import InvalidValue, Mechanism
+from kinematics import InvalidValue, Mechanism, Value
 from trajectory.cycles.least_stretch import Repaired, repair
 from trajectory.errors import LimitsExceeded
 from trajectory.laws import TimingLaw
@@ -24,7 +24,7 @@ _SAME = 1e-9  # rad, or of the path's length: no further apart are two poses the
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class Piece(Value):
     """One piece, from rest to rest, within its limits.
 
     Attributes:
@@ -49,7 +49,7 @@ class Piece:
 
 
 @dataclass(frozen=True, eq=False)
-class Cycle:
+class Cycle(Value):
     """A path that was proved, and its pieces in order, with the limits and the robot for which they are timed.
 
     Attributes:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinematics import Array, Mechanism
+from kinematics import Array, Mechanism, Value
 from trajectory.errors import LimitsExceeded
 from trajectory.limits import Limits
 from trajectory.motions import ByRate, TimedMotion, motion_of, torque_by_rate
@@ -35,7 +35,7 @@ _NEEDED = 0.5  # of a bound's excess; accelerations fall by the square
 
 
 @dataclass(frozen=True, eq=False)
-class Repaired:
+class Repaired(Value):
     """A motion within its limits.
 
     Attributes:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinematics import Array, InvalidShape, InvalidValue
+from kinematics import Array, InvalidShape, InvalidValue, Value
 from trajectory.motions.motion import PoseMotion
 from trajectory.paths import PathBox, located, throughout
 
@@ -17,7 +17,7 @@ _SLACK = (
 
 
 @dataclass(frozen=True, eq=False)
-class PoseSpline:
+class PoseSpline(Value):
     """The pose with a piecewise constant third derivative.
 
     Attributes:

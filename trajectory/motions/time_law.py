@@ -8,13 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics import Array, InvalidShape, InvalidValue
+from kinematics import Array, InvalidShape, InvalidValue, Value, bisected
 from trajectory.paths import located, throughout
 
 _ROUNDING = 1e-9  # of the length or the speed
 _ULPS = 2.0  # of the duration: both knots of an interval are rounded
 _SAME = 1e-13  # of the length: closer knots are one
-_BISECTIONS = 60  # down to rounding
 
 
 class PathMotion(NamedTuple):
@@ -28,7 +27,7 @@ class PathMotion(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class TimeLaw:
+class TimeLaw(Value):
     """Arc length as a piecewise quartic of time: s''' is linear in each interval.
 
     Attributes:
@@ -170,11 +169,7 @@ class TimeLaw:
         away = apart > _SAME * np.ptp(self.position)
         interval, positions = after[away] - 1, positions[away]
         low, high = np.zeros(interval.size), np.diff(self.times)[interval]
-        for _ in range(_BISECTIONS):
-            middle = 0.5 * low + 0.5 * high
-            before = self.inside(interval, middle).position < positions
-            low, high = np.where(before, middle, low), np.where(before, high, middle)
-        return interval, low
+        return interval, bisected(lambda since: self.inside(interval, since).position < positions, low, high)[0]
 
     def inside(self, interval: Array, since: Array) -> PathMotion:
         """In these intervals (...,), from 0, so long (...,) after each one's start [s]: its one-sided limits too."""

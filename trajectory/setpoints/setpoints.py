@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from kinematics import Array, InvalidShape, InvalidValue, Mechanism, actuator_motion, from_actuators
+from kinematics import Array, InvalidShape, InvalidValue, Mechanism, Value, actuator_motion, from_actuators
 from trajectory.cycles import Cycle, Piece, periods_of
 from trajectory.limits import Limits
 from trajectory.motions import Motion, motion_of
@@ -30,7 +30,7 @@ _CONSISTENT = 1e-9  # of the loop closure [rad, or over the robot's size]
 
 
 @dataclass(frozen=True, eq=False)
-class Setpoints:
+class Setpoints(Value):
     """One row a period, the last one closes the cycle; SI units.
 
     Attributes:

@@ -12,7 +12,7 @@ from itertools import product
 
 import numpy as np
 
-from kinematics import Array, InvalidValue, Mechanism
+from kinematics import Array, InvalidValue, Mechanism, Value
 from trajectory.errors import LimitsExceeded, TimingFailed
 from trajectory.limits import Limits
 from trajectory.motions import PacedMotion, TimedMotion, TimeLaw
@@ -26,7 +26,7 @@ _BRAKING = ("acceleration", "torque", "tool_acceleration", "jerk")
 
 
 @dataclass(frozen=True, eq=False)
-class EmergencyStop:
+class EmergencyStop(Value):
     """A stop that was verified.
 
     Attributes:

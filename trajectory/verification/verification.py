@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics import Array, Mechanism, from_actuators, rounded_up
+from kinematics import Array, Mechanism, Value, from_actuators, rounded_up
 from trajectory.limits import Limits
 from trajectory.motions import Motion, PoseMotion, TimedMotion, motion_of
 from trajectory.verification.limit_proof import proved_use
@@ -53,7 +53,7 @@ class Peak(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Verification:
+class Verification(Value):
     """What was measured, and what was proved.
 
     Attributes:

@@ -16,11 +16,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics import Array, JointMotion, Mechanism, actuator_motion
+from kinematics import Array, JointMotion, Mechanism, actuator_motion, bisected
 from trajectory.limits import Limits
 from trajectory.motions import AlongPath, torque_along
 from trajectory.paths import Path, places
 
+_FINEST = 2.0**-60  # of u, as it is found by bisection
 PARTS = 3  # of each interval: the limits stand at its stations, both ends among them
 FORCE = ("by w", "by x", "by rate", "constant", "by rate, either way", "either way")  # columns of `Rows.force`
 
@@ -68,12 +69,7 @@ def smoothstep(u: Array) -> tuple[Array, Array, Array, Array]:
 
 def progress_at(share: Array) -> Array:
     """u (k,) where S5 is so much, by bisection."""
-    low, high = np.zeros_like(share), np.ones_like(share)
-    for _ in range(60):
-        middle = (low + high) / 2
-        below = middle**3 * (10.0 + middle * (6.0 * middle - 15.0)) < share
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return (low + high) / 2
+    return bisected(lambda u: smoothstep(u)[0] < share, np.zeros_like(share), np.ones_like(share), _FINEST)[1]
 
 
 def stations(knots: Array) -> Array:
