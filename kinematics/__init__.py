@@ -15,7 +15,15 @@ from kinematics.dynamics import (
     to_actuators,
     torques,
 )
-from kinematics.errors import InvalidGeometry, InvalidShape, InvalidValue, LinkwrightError, UnreachablePose, plain
+from kinematics.errors import (
+    InvalidField,
+    InvalidGeometry,
+    InvalidShape,
+    InvalidValue,
+    LinkwrightError,
+    UnreachablePose,
+    plain,
+)
 from kinematics.evaluation import (
     CORES,
     BlockProgram,
@@ -76,6 +84,7 @@ __all__ = [
     "Heli4",
     "Hexa",
     "InertiaRecord",
+    "InvalidField",
     "InvalidGeometry",
     "InvalidShape",
     "InvalidValue",

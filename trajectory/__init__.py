@@ -18,6 +18,7 @@ from trajectory.errors import (
     RoughPath,
     SetpointFileError,
     TimingFailed,
+    UnsuitedPath,
     WaypointFileError,
 )
 from trajectory.files import CannotWrite, require_writable, write_files
@@ -110,6 +111,7 @@ __all__ = [
     "TimedPath",
     "TimingFailed",
     "TimingLaw",
+    "UnsuitedPath",
     "Verification",
     "Way",
     "WaypointFileError",

@@ -36,6 +36,14 @@ class InvalidPath(InvalidValue):
         super().__init__(f"{field} of pose {pose} of the path", found, expected)
 
 
+class UnsuitedPath(InvalidValue):
+    """A timing law does not take a path of this kind."""
+
+    def __init__(self, law: str, found: str, expected: str) -> None:
+        self.law = law
+        super().__init__(f"path of the {law} law", found, expected)
+
+
 class PathRefused(LinkwrightError):
     """A path passes where a limb cannot reach or the robot is singular, or could not be proved not to.
 

@@ -79,7 +79,7 @@ def _trajectory_table(pose_names: Sequence[str], joints: int) -> Table:
     return Table({name: key for name, key in trajectory.keys.items() if name != "cycle"})
 
 
-def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:
+def at_odds(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:
     """The paths of `data` (in SI) at odds with `mechanism`; what the models reject is left to them."""
     fields = geometry_fields(mechanism)
     for name, value in subtable(data, "geometry").items():

@@ -9,7 +9,16 @@ from typing import Any
 import numpy as np
 
 from design import Bounds, Box, Cylinder, Problem, Region, Requirement, SumLimit
-from kinematics import Array, FviBounds, GeometryRecord, InvalidValue, Mechanism, UnreachablePose, to_actuators
+from kinematics import (
+    Array,
+    FviBounds,
+    GeometryRecord,
+    InvalidField,
+    InvalidValue,
+    Mechanism,
+    UnreachablePose,
+    to_actuators,
+)
 from studies.building.hardware import inertia_of, ranges_of
 from studies.building.inside_region import leaving
 from studies.errors import HomeOutOfReach, StudyError
@@ -130,7 +139,7 @@ def require_cycle_inside(study: Study, file: TomlFile) -> None:
         pose = ", ".join(f"{v:.4g}" for v in found.pose)
         key = travelled(file)
         expected = f"a {key[-1]} inside the region, {region_of(study)}"
-        raise StudyError([file.problem(key, f"the pose ({pose}) on it", expected)])
+        raise StudyError([file.fault(key, f"the pose ({pose}) on it", expected)])
 
 
 def drive_of(drive: DriveTable) -> Drive:
@@ -159,7 +168,8 @@ def drive_file_names(study: Study, file: TomlFile, asked_for: Sequence[str] | No
         by = f"for --format {' --format '.join(asked_for)}" if asked_for else ""
         key = ("trajectory",) if asked_for else ("trajectory", "files")
         found = f"{error.what} {error.found} {by}".strip()
-        raise StudyError([refused_field(file, error, by) or file.problem(key, found, error.expected)]) from error
+        at_its_key = refused_field(file, error, by) if isinstance(error, InvalidField) else None
+        raise StudyError([at_its_key or file.fault(key, found, error.expected)]) from error
 
 
 def _along(robot: Mechanism, path: Path, period: float) -> Setpoints:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from kinematics import InvalidValue, LinkwrightError, UnreachablePose
-from studies.errors import ApproachFailed, HomeOutOfReach, KeyPath, Problem, StudyError, dotted, spelled
+from kinematics import InvalidField, LinkwrightError, UnreachablePose
+from studies.errors import ApproachFailed, Fault, HomeOutOfReach, KeyPath, StudyError, dotted, spelled
 from studies.study_file.toml_file import TomlFile
-from trajectory import LimitsExceeded, PathBeyondLimit, PathRefused, RoughPath, TimingFailed
+from trajectory import LimitsExceeded, PathBeyondLimit, PathRefused, RoughPath, TimingFailed, UnsuitedPath
 
 _RECORDS: dict[str, KeyPath] = {
     "Limits": ("trajectory", "limits"),
@@ -16,7 +16,7 @@ _RECORDS: dict[str, KeyPath] = {
     "Drive": ("trajectory", "drive"),
     "DriveTrain": ("inertia", "drive_train"),
 }
-_OF_THE_PATH = (PathRefused, RoughPath, UnreachablePose)
+_OF_THE_PATH = (PathRefused, RoughPath, UnreachablePose, UnsuitedPath)
 _OF_THE_LIMITS = (LimitsExceeded, TimingFailed)
 
 
@@ -45,31 +45,28 @@ def told_at_key(file: TomlFile) -> Iterator[None]:
         raise _of_home(file, error) from error
     except PathBeyondLimit as error:
         raise StudyFailed(file, _spelling(file, ("trajectory", "limits", error.limit)), error) from error
-    except (InvalidValue, *_OF_THE_PATH, *_OF_THE_LIMITS) as error:
-        if isinstance(error, InvalidValue):
-            if (problem := refused_field(file, error)) is not None:
-                raise StudyError([problem]) from error
-            if not error.what.startswith("path "):
-                raise
+    except InvalidField as error:
+        if (fault := refused_field(file, error)) is None:
+            raise
+        raise StudyError([fault]) from error
+    except (*_OF_THE_PATH, *_OF_THE_LIMITS) as error:
         at_limits = isinstance(error, _OF_THE_LIMITS)
         raise StudyFailed(file, ("trajectory", "limits") if at_limits else travelled(file), error) from error
 
 
-def refused_field(file: TomlFile, error: InvalidValue, why: str = "") -> Problem | None:
+def refused_field(file: TomlFile, error: InvalidField, why: str = "") -> Fault | None:
     """What a record's field refuses, at its key; None where the error is of no record that a study fills.
 
     `why` stands behind what was found.
     """
-    record, _, field = error.what.partition(" ")
-    if record not in _RECORDS:
+    if error.record not in _RECORDS:
         return None
-    name, _, of = field.partition(" ")
-    path = _spelling(file, (*_RECORDS[record], name))
+    path = _spelling(file, (*_RECORDS[error.record], error.field))
     try:
         found = spelled(file.value(path))
     except LookupError:
         found = "nothing"
-    return file.problem(path, " ".join(filter(None, (found, of, why))), error.expected)
+    return file.fault(path, " ".join(filter(None, (found, error.use, why))), error.expected)
 
 
 def _spelling(file: TomlFile, path: KeyPath) -> KeyPath:
@@ -81,7 +78,7 @@ def _spelling(file: TomlFile, path: KeyPath) -> KeyPath:
 def _of_home(file: TomlFile, error: HomeOutOfReach) -> StudyError:
     given = next((path for path in file.lines if path[0] == "home"), None)
     found = spelled(file.value(given)) if given else f"none, so the default {error.shown}"
-    return StudyError([file.problem(given or ("home",), found, f"a home in reach ({error.cause})")])
+    return StudyError([file.fault(given or ("home",), found, f"a home in reach ({error.cause})")])
 
 
 def travelled(file: TomlFile) -> KeyPath:

@@ -168,7 +168,7 @@ def test_a_fault_names_file_key_line_and_what_was_expected(
     assert found
     path = write(before + new + after)
     error = refused(path)
-    [problem] = [problem for problem in error.problems if problem.key == key]
+    [problem] = [problem for problem in error.faults if problem.key == key]
     assert (problem.file, problem.line) == (path, (before + new).count("\n") + 1)
     assert str(problem).startswith(f"{path}:{problem.line}: {key}: found ")
     assert says in str(problem)
@@ -189,12 +189,12 @@ def test_a_missing_key_is_reported_at_its_table(
 ) -> None:
     error = refused(write(minimal_text.replace(left_out, "")))
     assert (error.key, error.line, error.found) == (key, line, "nothing")
-    assert len(error.problems) == 1
+    assert len(error.faults) == 1
 
 
 def test_a_region_without_keys_lacks_its_kind(write: Write, minimal_text: str) -> None:
     error = refused(write(minimal_text.partition("kind")[0]))
-    assert [(problem.key, problem.line) for problem in error.problems] == [("region.kind", 3)]
+    assert [(problem.key, problem.line) for problem in error.faults] == [("region.kind", 3)]
 
 
 def test_a_missing_table_is_reported(write: Write, minimal_text: str) -> None:
@@ -219,7 +219,7 @@ def test_a_missing_table_is_reported(write: Write, minimal_text: str) -> None:
 )
 def test_what_should_be_a_table_is_told(write: Write, minimal_text: str, text: str, key: str, says: str) -> None:
     error = refused(write(minimal_text + text))
-    [problem] = [problem for problem in error.problems if problem.key == key]
+    [problem] = [problem for problem in error.faults if problem.key == key]
     assert says in str(problem)
 
 
@@ -237,7 +237,7 @@ def test_a_box_may_not_name_a_coordinate_that_the_mechanism_lacks(write: Write, 
 
 def test_a_misspelt_key_is_not_reported_as_missing_too(write: Write, study_text: str) -> None:
     error = refused(write(study_text.replace("radius =", "radus =").replace("lift_mm", "lift_inch")))
-    assert [problem.key for problem in error.problems] == [
+    assert [problem.key for problem in error.faults] == [
         "region.radus",
         "trajectory.cycle.lift_inch",
     ]
@@ -245,7 +245,7 @@ def test_a_misspelt_key_is_not_reported_as_missing_too(write: Write, study_text:
 
 def test_a_key_and_its_misspelling_are_both_judged(write: Write, study_text: str) -> None:
     error = refused(write(study_text.replace("grid = 2000", "grid = 10\ngridd = 10")))
-    assert [problem.key for problem in error.problems] == ["trajectory.grid", "trajectory.gridd"]
+    assert [problem.key for problem in error.faults] == ["trajectory.grid", "trajectory.gridd"]
 
 
 def test_all_faults_are_reported_one_a_line_in_the_files_order(write: Write, study_text: str) -> None:
@@ -265,7 +265,7 @@ def test_all_faults_are_reported_one_a_line_in_the_files_order(write: Write, stu
 
 def test_an_unknown_mechanism_does_not_hide_other_faults(write: Write, study_text: str) -> None:
     error = refused(write(study_text.replace('"Fake"', '"Nope"').replace("grid = 2000", "grid = 1")))
-    assert [problem.key for problem in error.problems] == ["mechanism", "trajectory.grid"]
+    assert [problem.key for problem in error.faults] == ["mechanism", "trajectory.grid"]
 
 
 def test_the_second_row_of_an_array_of_tables_is_told_by_its_line(write: Write, minimal_text: str) -> None:

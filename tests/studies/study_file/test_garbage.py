@@ -22,7 +22,7 @@ def load_or_fault(path: Path) -> None:
             assert isinstance(load_study(read_toml(path)), Study)
         except StudyError as error:
             lines = str(error).split("\n")
-            if len(lines) != len(error.problems) or not all(line.startswith(str(path)) for line in lines):
+            if len(lines) != len(error.faults) or not all(line.startswith(str(path)) for line in lines):
                 raise AssertionError(lines) from error
             raise
 

@@ -182,7 +182,7 @@ def test_a_fault_is_told_with_its_key(
 ) -> None:
     with pytest.raises(StudyError) as caught:
         load_study(read_toml(written(tmp_path, text, kind)))
-    problems = [p for p in caught.value.problems if key in p.key]
+    problems = [p for p in caught.value.faults if key in p.key]
     assert problems, str(caught.value)
     assert expected in problems[0].expected
     assert problems[0].line is not None
@@ -211,7 +211,7 @@ def test_a_blend_that_does_not_fit_is_told_as_the_study_spells_it(tmp_path: Path
 def test_an_unknown_mechanism_is_told_without_faults_in_its_waypoints(tmp_path: Path) -> None:
     with pytest.raises(StudyError) as caught:
         load_study(read_toml(written(tmp_path, ROWS, ("Heli5", SCHOENFLIES))))
-    assert [p.key for p in caught.value.problems] == ["mechanism"]
+    assert [p.key for p in caught.value.faults] == ["mechanism"]
 
 
 def test_a_fault_in_the_file_of_waypoints_is_told_with_line_and_column(tmp_path: Path) -> None:
