@@ -6,7 +6,7 @@ import numpy as np
 
 from kinematics import Array, Mechanism, inverse_dynamics, to_actuators
 from trajectory.errors import PathBeyondLimit
-from trajectory.limits import JOINT_RANGES, InstantLimit, Limits
+from trajectory.limits import JOINT_RANGES, InstantLimit, Limit, Limits
 from trajectory.paths import Path
 
 _ROUNDING = 1e-9  # relative
@@ -53,9 +53,7 @@ def require_held(robot: Mechanism, path: Path, limits: Limits, payload: float, s
             _require(robot, path, limit, s, inverse_dynamics(robot, payload, poses, rest, rest), (-most, most))
 
 
-def _require(
-    robot: Mechanism, path: Path, limit: InstantLimit, s: Array, values: Array, ranges: tuple[Array, Array]
-) -> None:
+def _require(robot: Mechanism, path: Path, limit: Limit, s: Array, values: Array, ranges: tuple[Array, Array]) -> None:
     """Raise for the value that is furthest beyond its range, over the range's width."""
     low, high = ranges
     beyond = np.maximum(low - values, values - high) / (high - low)

@@ -1,6 +1,17 @@
 """Limits, one file a kind: its words, what a motion uses of it, and what it asks of a law."""
 
-from trajectory.limits.constraints import Along, Cap, Constraint, Disc, Linear, Place, Sloped, Squared, Third, TorqueAlong
+from trajectory.limits.constraints import (
+    Along,
+    Cap,
+    Constraint,
+    Disc,
+    Linear,
+    Place,
+    Sloped,
+    Squared,
+    Third,
+    TorqueAlong,
+)
 from trajectory.limits.field import SPEED_UNIT, Field, JointField, RangeField, ToolField
 from trajectory.limits.jerk import JOINT_JERK
 from trajectory.limits.joint_ranges import JOINT_RANGES
@@ -30,8 +41,8 @@ __all__ = [
     "Place",
     "RangeField",
     "Sampled",
-    "SlopesOverIntervals",
     "Sloped",
+    "SlopesOverIntervals",
     "Squared",
     "SymbolicMotion",
     "Third",

@@ -23,7 +23,9 @@ class JointAcceleration(InstantLimit):
 
     name = "joint acceleration"
     fields = (
-        JointField("acceleration", "Of the joints.", "a number > 0, or one a joint (rad/s^2, or m/s^2)", "rad/s^2 or m/s^2"),
+        JointField(
+            "acceleration", "Of the joints.", "a number > 0, or one a joint (rad/s^2, or m/s^2)", "rad/s^2 or m/s^2"
+        ),
     )
     kind = Linear
     power = 2
@@ -36,7 +38,7 @@ class JointAcceleration(InstantLimit):
     def constraint(self, along: Along, limits: Limits) -> Linear:
         """q'' = dq u + ddq x."""
         _, first, second, _ = along.joints
-        limit, none = limits.of_joints("acceleration", first.shape[-1]), np.zeros_like(first)
+        limit, none = limits.set_of_joints("acceleration", first.shape[-1]), np.zeros_like(first)
         return Linear(first / limit, second / limit, none, none, none)
 
     def rows_over_intervals(self, over: OverIntervals, limits: Limits) -> IntervalRows | None:
@@ -47,7 +49,7 @@ class JointAcceleration(InstantLimit):
     def symbolic(self, motion: SymbolicMotion, limits: Limits) -> ca.SX:
         """Over the limit."""
         acceleration = motion.joints[2]
-        return acceleration / ca.DM(limits.of_joints("acceleration", acceleration.numel()))
+        return acceleration / ca.DM(limits.set_of_joints("acceleration", acceleration.numel()))
 
 
 JOINT_ACCELERATION = JointAcceleration()

@@ -114,6 +114,7 @@ class Squared:
 Constraint = Place | Cap | Linear | Disc | Third | Squared
 
 
-def torque_over(limit: Array, torque: TorqueAlong) -> list[Array]:
-    """The five parts of a row of the torque over a limit (m,)."""
-    return [part / limit for part in torque[:5]]
+def torque_over(limit: Array, torque: TorqueAlong) -> tuple[Array, Array, Array, Array, Array]:
+    """The five parts of a `Linear` for the torque over a limit (m,)."""
+    t = torque
+    return t.inertia / limit, t.square / limit, t.viscous / limit, t.constant / limit, t.friction / limit

@@ -41,13 +41,13 @@ class JointJerk(InstantLimit):
     def constraint(self, along: Along, limits: Limits) -> Third:
         """q''' = sqrt(x) (dq z + 3 ddq u + dddq x)."""
         _, first, second, third = along.joints
-        limit = limits.of_joints("jerk", first.shape[-1])
+        limit = limits.set_of_joints("jerk", first.shape[-1])
         return Third(first / limit, 3.0 * second / limit, third / limit)
 
     def symbolic(self, motion: SymbolicMotion, limits: Limits) -> ca.SX:
         """Over the limit."""
         jerk = motion.joints[3]
-        return jerk / ca.DM(limits.of_joints("jerk", jerk.numel()))
+        return jerk / ca.DM(limits.set_of_joints("jerk", jerk.numel()))
 
 
 JOINT_JERK = JointJerk()

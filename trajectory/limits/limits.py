@@ -94,7 +94,8 @@ class Limits:
 
     def less(self, *others: Limit) -> Limits:
         """These without some."""
-        return replace(self, **{field.name: None for limit in others for field in limit.fields})
+        nothing: dict[str, Any] = {field.name: None for limit in others for field in limit.fields}
+        return replace(self, **nothing)
 
     def constraints(self, kind: type[Kind], along: Along) -> list[Kind]:
         """What the limits of a kind ask of a pace on a way."""
@@ -117,6 +118,12 @@ class Limits:
         if isinstance(value, tuple) and len(value) != count:
             raise InvalidValue(f"Limits {name}", value, f"one number or {count}, one a joint")
         return np.broadcast_to(np.asarray(value, dtype=float), (count,)).copy()
+
+    def set_of_joints(self, name: str, count: int) -> Array:
+        """(count,) as `of_joints`, of a limit that is set."""
+        limit = self.of_joints(name, count)
+        assert limit is not None, name
+        return limit
 
     def ranges(self, count: int) -> tuple[Array, Array] | None:
         """(count,) lowest and (count,) highest positions, None where there is no limit; errors as `of_joints`."""

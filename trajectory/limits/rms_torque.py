@@ -48,10 +48,13 @@ class RmsTorque(MeanSquareLimit):
     def least_stretch(self, peak: float, motion: Sampled, limits: Limits) -> float:  # noqa: ARG002
         """The largest of all drives."""
         torque = motion.torque
-        most = self.most(limits, torque.constant.shape[-1])
-        assert most is not None
+        most = limits.set_of_joints("rms_torque", torque.constant.shape[-1])
         drives = [ByRate(*(part[..., k] for part in torque)) for k in range(most.size)]
-        return max(stretch_of_mean_square(self.name, drive, float(v), motion.mean) for drive, v in zip(drives, most, strict=True))
+        factors = [
+            stretch_of_mean_square(self.name, drive, float(limit), motion.mean)
+            for drive, limit in zip(drives, most, strict=True)
+        ]
+        return max(factors)
 
     def holding_torque(self, limits: Limits, count: int) -> Array | None:
         """In the mean."""
@@ -60,12 +63,12 @@ class RmsTorque(MeanSquareLimit):
     def constraint(self, along: Along, limits: Limits) -> Squared:
         """Over the limit, with all friction."""
         t = along.torque
-        limit = self.most(limits, t.inertia.shape[-1])
+        limit = limits.set_of_joints("rms_torque", t.inertia.shape[-1])
         return Squared(t.inertia / limit, t.square / limit, t.viscous / limit, t.whole / limit)
 
     def symbolic(self, motion: SymbolicMotion, limits: Limits) -> ca.SX:
         """Over the limit."""
-        return motion.torque / ca.DM(self.most(limits, motion.torque.numel()))
+        return motion.torque / ca.DM(limits.set_of_joints("rms_torque", motion.torque.numel()))
 
 
 RMS_TORQUE = RmsTorque()

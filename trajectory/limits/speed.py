@@ -35,18 +35,18 @@ class JointSpeed(InstantLimit):
         """q' = dq sqrt(x)."""
         slopes = along.joints.first
         with np.errstate(divide="ignore"):
-            return Cap((np.abs(slopes) / limits.of_joints("speed", slopes.shape[-1])).max(axis=-1) ** -2.0)
+            return Cap((np.abs(slopes) / limits.set_of_joints("speed", slopes.shape[-1])).max(axis=-1) ** -2.0)
 
     def highest_over_intervals(self, slopes: SlopesOverIntervals, limits: Limits) -> Array:
         """Where the slopes are least."""
         with np.errstate(divide="ignore"):
-            found: Array = (slopes.joints / limits.of_joints("speed", slopes.joints.shape[1])).max(axis=-1) ** -2.0
+            found: Array = (slopes.joints / limits.set_of_joints("speed", slopes.joints.shape[1])).max(axis=-1) ** -2.0
         return found
 
     def symbolic(self, motion: SymbolicMotion, limits: Limits) -> ca.SX:
         """Over the limit."""
         speed = motion.joints[1]
-        return speed / ca.DM(limits.of_joints("speed", speed.numel()))
+        return speed / ca.DM(limits.set_of_joints("speed", speed.numel()))
 
 
 JOINT_SPEED = JointSpeed()

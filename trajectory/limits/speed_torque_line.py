@@ -75,10 +75,7 @@ class SpeedTorqueLine(InstantLimit):
     @staticmethod
     def _ends(limits: Limits, count: int) -> tuple[Array, Array]:
         """(count,) stall torques and no-load speeds."""
-        stall, fastest = limits.of_joints("stall_torque", count), limits.of_joints("no_load_speed", count)
-        assert stall is not None
-        assert fastest is not None
-        return stall, fastest
+        return limits.set_of_joints("stall_torque", count), limits.set_of_joints("no_load_speed", count)
 
 
 SPEED_TORQUE_LINE = SpeedTorqueLine()

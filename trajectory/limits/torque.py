@@ -35,8 +35,7 @@ class PeakTorque(InstantLimit):
 
     def least_stretch(self, peak: float, motion: Sampled, limits: Limits) -> float:  # noqa: ARG002
         """By what the torque is at another rate: it keeps what it needs at rest."""
-        limit = limits.of_joints("torque", motion.torque.constant.shape[-1])
-        assert limit is not None
+        limit = limits.set_of_joints("torque", motion.torque.constant.shape[-1])
         return stretch_of_sum(self.name, motion.torque, limit, 0.0)
 
     def holding_torque(self, limits: Limits, count: int) -> Array | None:
@@ -45,8 +44,7 @@ class PeakTorque(InstantLimit):
 
     def constraint(self, along: Along, limits: Limits) -> Linear:
         """Over the limit."""
-        limit = limits.of_joints("torque", along.joints.first.shape[-1])
-        assert limit is not None
+        limit = limits.set_of_joints("torque", along.joints.first.shape[-1])
         return Linear(*torque_over(limit, along.torque))
 
     def rows_over_intervals(self, over: OverIntervals, limits: Limits) -> IntervalRows | None:
@@ -56,7 +54,7 @@ class PeakTorque(InstantLimit):
 
     def symbolic(self, motion: SymbolicMotion, limits: Limits) -> ca.SX:
         """Over the limit."""
-        return motion.torque / ca.DM(limits.of_joints("torque", motion.torque.numel()))
+        return motion.torque / ca.DM(limits.set_of_joints("torque", motion.torque.numel()))
 
 
 PEAK_TORQUE = PeakTorque()

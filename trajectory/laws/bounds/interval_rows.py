@@ -36,7 +36,9 @@ _MOVING = 0.5  # the length of a tangent is 1, or 0 where the tool turns in plac
 _SLACK = 1e-12  # relative and absolute: far more than what evaluation in double arithmetic is off by
 
 
-def interval_rows(robot: Mechanism, path: Path, limits: Limits, payload: float, edges: Array) -> tuple[IntervalRows, Array]:
+def interval_rows(
+    robot: Mechanism, path: Path, limits: Limits, payload: float, edges: Array
+) -> tuple[IntervalRows, Array]:
     """The rows, and the largest x that the limits of speed allow (k,) [m^2/s^2], between neighbouring edges (k + 1,).
 
     Args:
@@ -61,8 +63,8 @@ def interval_rows(robot: Mechanism, path: Path, limits: Limits, payload: float, 
 
     first, second, none = ball(4), ball(5), np.zeros_like(ball(0)[0])
     moving = np.linalg.norm(middle[1][:, : places(path.pose_names)], axis=-1) > _MOVING
-    slopes = SlopesOverIntervals(np.maximum(np.abs(first[0]) - first[1], 0.0), moving)
-    bounds = [limit.highest_over_intervals(slopes, limits) for limit in limits]
+    least = SlopesOverIntervals(np.maximum(np.abs(first[0]) - first[1], 0.0), moving)
+    bounds = [limit.highest_over_intervals(least, limits) for limit in limits]
     highest = np.min([most for most in bounds if most is not None], axis=0)
 
     def torque() -> IntervalRows:

@@ -154,7 +154,7 @@ def _within(start: ca.SX, t: float, n: int) -> list[ca.SX]:
 
 def _limited(robot: Mechanism, limits: Limits, payload: float) -> tuple[ca.Function, ca.Function, ca.Function]:
     """What is kept between -1 and 1 at a pose, velocity and acceleration; the joints' jerk; squares of the torque."""
-    model, count = robot.model(), len(robot.joint_names)
+    model = robot.model()
     rates = velocity, acceleration, jerk = [
         ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration", "jerk")
     ]

@@ -62,11 +62,8 @@ def path_rows(robot: Mechanism, path: Path, limits: Limits, payload: float, s: A
     """
     along = _along(robot, path, payload, s)
     none = np.zeros_like(along.joints.first)[:, :0]
-    rows = [(none,) * 4]
-    for linear in limits.constraints(Linear, along):
-        rows.append((linear.by_u, linear.by_x, linear.constant, linear.friction))
-    for disc in limits.constraints(Disc, along):
-        rows.append(_facets(disc))
+    linear = [(row.by_u, row.by_x, row.constant, row.friction) for row in limits.constraints(Linear, along)]
+    rows = [(none,) * 4, *linear, *(_facets(disc) for disc in limits.constraints(Disc, along))]
     highest = np.min([cap.most for cap in limits.constraints(Cap, along)], axis=0)
     return PathRows(s, highest, *(np.concatenate(part, axis=-1) for part in zip(*rows, strict=True)))
 
