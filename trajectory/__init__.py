@@ -22,7 +22,7 @@ from trajectory.errors import (
 )
 from trajectory.files import CannotWrite, require_writable, write_files
 from trajectory.laws.bounds import lower_bound
-from trajectory.limits import Limits
+from trajectory.limits import LIMITS, SPEED_UNIT, JointField, Limit, LimitField, Limits, RangeField, ToolField
 from trajectory.motions import (
     Motion,
     PathMotion,
@@ -74,12 +74,17 @@ def __getattr__(name: str) -> Any:
 
 
 __all__ = [
+    "LIMITS",
+    "SPEED_UNIT",
     "STANDARD_SIZES",
     "AdeptCycle",
     "CannotWrite",
     "Cycle",
     "EmergencyStop",
     "InvalidPath",
+    "JointField",
+    "Limit",
+    "LimitField",
     "Limits",
     "LimitsExceeded",
     "Motion",
@@ -96,6 +101,7 @@ __all__ = [
     "PoseBounds",
     "PoseMotion",
     "PoseSpline",
+    "RangeField",
     "Repaired",
     "Reversed",
     "RoughPath",
@@ -107,6 +113,7 @@ __all__ = [
     "TimedPath",
     "Timing",
     "TimingFailed",
+    "ToolField",
     "Verification",
     "Way",
     "WaypointFileError",

@@ -12,28 +12,28 @@ from trajectory.limits.constraints import (
     Third,
     TorqueAlong,
 )
-from trajectory.limits.field import SPEED_UNIT, Field, JointField, RangeField, ToolField
+from trajectory.limits.field import SPEED_UNIT, JointField, LimitField, RangeField, ToolField
 from trajectory.limits.jerk import JOINT_JERK
 from trajectory.limits.joint_ranges import JOINT_RANGES
 from trajectory.limits.limit import InstantLimit, Limit, MeanSquareLimit, SymbolicMotion, Use
-from trajectory.limits.limits import KINDS, Limits, mean_squares, uses
+from trajectory.limits.limits import LIMITS, Limits, mean_squares, uses
 from trajectory.limits.over_intervals import IntervalRows, OverIntervals, SlopesOverIntervals
 from trajectory.limits.stretch import Sampled
 
 __all__ = [
     "JOINT_JERK",
     "JOINT_RANGES",
-    "KINDS",
+    "LIMITS",
     "SPEED_UNIT",
     "Along",
     "Cap",
     "Constraint",
     "Disc",
-    "Field",
     "InstantLimit",
     "IntervalRows",
     "JointField",
     "Limit",
+    "LimitField",
     "Limits",
     "Linear",
     "MeanSquareLimit",

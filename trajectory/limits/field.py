@@ -14,7 +14,7 @@ SPEED_UNIT = "rad/s or m/s"
 
 
 @dataclass(frozen=True)
-class Field(ABC):
+class LimitField(ABC):
     """One field.
 
     Attributes:
@@ -40,7 +40,7 @@ class Field(ABC):
         """
 
 
-class JointField(Field):
+class JointField(LimitField):
     """A number > 0 for all joints, or one a joint."""
 
     def checked(self, value: Any) -> float | tuple[float, ...]:
@@ -49,7 +49,7 @@ class JointField(Field):
         return numbers[0] if isinstance(value, int | float) else numbers
 
 
-class ToolField(Field):
+class ToolField(LimitField):
     """One number > 0."""
 
     def checked(self, value: Any) -> float:
@@ -60,7 +60,7 @@ class ToolField(Field):
         return numbers[0]
 
 
-class RangeField(Field):
+class RangeField(LimitField):
     """low < high for all joints, or one such pair a joint."""
 
     def checked(self, value: Any) -> Any:

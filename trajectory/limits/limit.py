@@ -14,7 +14,7 @@ import numpy as np
 
 from kinematics import Array, JointMotion, Mechanism
 from trajectory.limits.constraints import Along, Constraint
-from trajectory.limits.field import Field
+from trajectory.limits.field import LimitField
 from trajectory.limits.over_intervals import IntervalRows, OverIntervals, SlopesOverIntervals
 from trajectory.limits.stretch import Sampled
 from trajectory.motions import Motion, PoseMotion
@@ -55,16 +55,16 @@ class Limit(ABC):
         kind: of the constraint that it is to a pace on a way.
         power: of the pace, with which the quantity grows, about; 0 where no pace changes it.
         of_torque: whether the torque is part of it.
-        at_tool: whether it is of the tool and not of the joints.
+        not_for_moves: why a single move from pose to pose does not keep it; empty where it does.
     """
 
     name: ClassVar[str]
-    fields: ClassVar[tuple[Field, ...]]
+    fields: ClassVar[tuple[LimitField, ...]]
     both: ClassVar[str] = ""
     kind: ClassVar[type[Constraint]]
     power: ClassVar[int]
     of_torque: ClassVar[bool] = False
-    at_tool: ClassVar[bool] = False
+    not_for_moves: ClassVar[str] = ""
 
     def is_set(self, limits: Limits) -> bool:
         """Whether a motion has to keep it."""
@@ -130,6 +130,8 @@ class InstantLimit(Limit):
 
 class MeanSquareLimit(Limit):
     """A limit of the root mean square of a quantity over a way from rest to rest."""
+
+    not_for_moves = "it is a mean over a cycle, which a single move is none of"
 
     @abstractmethod
     def quantity(self, motion: Motion) -> Array:

@@ -25,7 +25,7 @@ PerJoint = float | tuple[float, ...]
 Range = tuple[float, float]
 Kind = TypeVar("Kind", bound=Constraint)
 
-KINDS: tuple[Limit, ...] = (
+LIMITS: tuple[Limit, ...] = (
     JOINT_SPEED,
     JOINT_ACCELERATION,
     PEAK_TORQUE,
@@ -43,7 +43,7 @@ KINDS: tuple[Limit, ...] = (
 class Limits:
     """Limits, each but the position the same in both directions; None is no limit. A joint limit is one number (one
     range) or one a joint; where drives couple the joints, as the Peppermill's do, it holds at the actuators. What each
-    field means, its limit in `KINDS` says.
+    field means, its limit in `LIMITS` says.
 
     Attributes:
         speed: [rad/s or m/s].
@@ -72,7 +72,7 @@ class Limits:
     rms_torque: PerJoint | None = None
 
     def __post_init__(self) -> None:
-        for limit in KINDS:
+        for limit in LIMITS:
             values = [getattr(self, field.name) for field in limit.fields]
             for field, value in zip(limit.fields, values, strict=True):
                 if value is not None or field.required:
@@ -82,7 +82,7 @@ class Limits:
 
     def __iter__(self) -> Iterator[Limit]:
         """Those that are set."""
-        return (limit for limit in KINDS if limit.is_set(self))
+        return (limit for limit in LIMITS if limit.is_set(self))
 
     def has(self, *kinds: type[Constraint]) -> bool:
         """Whether a limit is set that is a constraint of one of these kinds."""
@@ -149,13 +149,13 @@ def uses(robot: Mechanism, motion: Motion, limits: Limits, slack: Motion = NO_SL
         limits: of joints and tool.
         slack: how far each sample may be from what it is; the most that it may use is then found.
     """
-    found = {limit: limit.use(robot, motion, limits, slack) for limit in KINDS if isinstance(limit, InstantLimit)}
+    found = {limit: limit.use(robot, motion, limits, slack) for limit in LIMITS if isinstance(limit, InstantLimit)}
     return {limit: use for limit, use in found.items() if use is not None}
 
 
 def mean_squares() -> tuple[MeanSquareLimit, ...]:
     """Every limit of a root mean square."""
-    return tuple(limit for limit in KINDS if isinstance(limit, MeanSquareLimit))
+    return tuple(limit for limit in LIMITS if isinstance(limit, MeanSquareLimit))
 
 
 def _lists(value: Any) -> Any:

@@ -26,7 +26,7 @@ class ToolSpeed(InstantLimit):
     fields = (ToolField("tool_speed", "Of the tool point.", "a speed > 0 (m/s)", "m/s"),)
     kind = Cap
     power = 1
-    at_tool = True
+    not_for_moves = "a move keeps the joints' limits"
 
     def use(self, robot: Mechanism, motion: Motion, limits: Limits, slack: Motion) -> Use:
         """The speed itself."""
@@ -53,7 +53,7 @@ class ToolAcceleration(InstantLimit):
     fields = (ToolField("tool_acceleration", "Of the tool point.", "an acceleration > 0 (m/s^2)", "m/s^2"),)
     kind = Disc
     power = 2
-    at_tool = True
+    not_for_moves = "a move keeps the joints' limits"
 
     def use(self, robot: Mechanism, motion: Motion, limits: Limits, slack: Motion) -> Use:
         """The acceleration itself."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from kinematics import Array, InvalidValue, Mechanism, checked, to_actuators
 from trajectory.errors import LimitsExceeded, MoveRefused
-from trajectory.limits import Limits, MeanSquareLimit
+from trajectory.limits import Limits
 from trajectory.moves.joint_line import of_joints, require_at
 from trajectory.moves.pose_line import of_pose
 from trajectory.moves.ruckig_plan import fastest_move, fastest_stop
@@ -146,12 +146,8 @@ def _move(
 
 def _require_usable(limits: Limits, period: float) -> None:
     for limit in limits:
-        name = limit.fields[0].name
-        if limit.at_tool:
-            what = "None: a move keeps the joints' limits"
-            raise InvalidValue(f"Limits {name} for a move", getattr(limits, name), what)
-        if isinstance(limit, MeanSquareLimit):
-            what = "None: it is a mean over a cycle, which a single move is none of"
-            raise InvalidValue(f"Limits {name} for a move", getattr(limits, name), what)
+        if limit.not_for_moves:
+            name = limit.fields[0].name
+            raise InvalidValue(f"Limits {name} for a move", getattr(limits, name), f"None: {limit.not_for_moves}")
     if not (math.isfinite(period) and period > 0.0):
         raise InvalidValue("period", period, "a finite time > 0 s")

@@ -14,7 +14,7 @@ import numpy as np
 
 from kinematics import Array, InvalidValue, Mechanism
 from trajectory.errors import LimitsExceeded, TimingFailed
-from trajectory.limits import KINDS, Disc, Limits, Linear, Squared, Third
+from trajectory.limits import LIMITS, Disc, Limits, Linear, Squared, Third
 from trajectory.motions import PacedMotion, TimedMotion, TimeLaw
 from trajectory.stops.braking import braking
 from trajectory.stops.smooth_braking import smooth_braking
@@ -22,7 +22,7 @@ from trajectory.verification import Verification, verify
 
 _MARGINS = (1e-3, 4e-3, 1e-2, 3e-2)  # of the limits: the first with which they are proved between the knots too
 _LATER = 2  # knots of the motion at which braking may start where it does not succeed at once
-_BRAKING = [limit for limit in KINDS if limit.kind in (Linear, Disc, Third)]
+_BRAKING = [limit for limit in LIMITS if limit.kind in (Linear, Disc, Third)]
 
 
 @dataclass(frozen=True, eq=False)
