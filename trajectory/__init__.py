@@ -24,7 +24,7 @@ from trajectory.errors import (
 from trajectory.files import CannotWrite, require_writable, write_files
 from trajectory.laws import LAWS, Law, TimingLaw, law_named
 from trajectory.laws.bounds import lower_bound
-from trajectory.limits import Limits
+from trajectory.limits import LIMITS, SPEED_UNIT, JointField, Limit, LimitField, Limits, RangeField, ToolField
 from trajectory.motions import (
     Motion,
     PathMotion,
@@ -77,13 +77,18 @@ def __getattr__(name: str) -> Any:
 
 __all__ = [
     "LAWS",
+    "LIMITS",
+    "SPEED_UNIT",
     "STANDARD_SIZES",
     "AdeptCycle",
     "CannotWrite",
     "Cycle",
     "EmergencyStop",
     "InvalidPath",
+    "JointField",
     "Law",
+    "Limit",
+    "LimitField",
     "Limits",
     "LimitsExceeded",
     "Motion",
@@ -100,6 +105,7 @@ __all__ = [
     "PoseBounds",
     "PoseMotion",
     "PoseSpline",
+    "RangeField",
     "Repaired",
     "Reversed",
     "RoughPath",
@@ -111,6 +117,7 @@ __all__ = [
     "TimedPath",
     "TimingFailed",
     "TimingLaw",
+    "ToolField",
     "UnsuitedPath",
     "Verification",
     "Way",

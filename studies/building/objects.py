@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -202,11 +203,10 @@ def pose_bounds_of(study: Study) -> PoseBounds:
 
 
 def approach_limits(asked: ApproachTable, drives: Limits, joints: int) -> Limits:
-    """The approach's own limits, nowhere above the drives', and the drives' torque."""
+    """The approach's own limits, nowhere above the drives', and what else of these a move keeps."""
     own = Limits(asked.speed, asked.acceleration, jerk=asked.jerk)
-    kept = ("torque", "position", "stall_torque", "no_load_speed")  # the RMS is a cycle's
-    merged: dict[str, Any] = {name: getattr(drives, name) for name in kept}
+    merged: dict[str, Any] = {}
     for name in ("speed", "acceleration", "jerk"):
         given = [limit for limits in (own, drives) if (limit := limits.of_joints(name, joints)) is not None]
         merged[name] = tuple(np.min(given, axis=0).tolist())
-    return Limits(**merged)
+    return replace(drives.less(*(limit for limit in drives if limit.not_for_moves)), **merged)

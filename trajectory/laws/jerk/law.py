@@ -13,7 +13,7 @@ from trajectory.laws.jerk.limit_rows import PARTS, smoothstep
 from trajectory.laws.jerk.motion import law_in_time
 from trajectory.laws.jerk.refinement import Answer, Problem, fastest
 from trajectory.laws.jerk.refusal import refuse
-from trajectory.limits import Limits
+from trajectory.limits import JOINT_JERK, Limits
 from trajectory.motions import TimedPath, TimeLaw
 from trajectory.paths import Part, Path, require_poses_of, require_smooth
 
@@ -46,7 +46,7 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     """
     if intervals < LEAST_INTERVALS:
         raise InvalidValue("intervals of the jerk law", intervals, f"at least {LEAST_INTERVALS}")
-    if limits.jerk is None:
+    if not JOINT_JERK.is_set(limits):
         raise InvalidValue("Limits jerk for the jerk law", None, "a limit; without one the toppra law is the fastest")
     require_poses_of(robot, path)
     require_smooth(path)

@@ -1,0 +1,83 @@
+"""Caps of the tool point's speed and acceleration, for what it carries."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import casadi as ca
+import numpy as np
+
+from kinematics import Array, Mechanism
+from trajectory.limits.constraints import Along, Cap, Disc
+from trajectory.limits.field import ToolField
+from trajectory.limits.limit import InstantLimit, SymbolicMotion, Use, against
+from trajectory.limits.over_intervals import IntervalRows, OverIntervals, SlopesOverIntervals
+from trajectory.motions import Motion
+from trajectory.paths import places
+
+if TYPE_CHECKING:
+    from trajectory.limits.limits import Limits
+
+
+class ToolSpeed(InstantLimit):
+    """|v| <= cap."""
+
+    name = "tool speed"
+    fields = (ToolField("tool_speed", "Of the tool point.", "a speed > 0 (m/s)", "m/s"),)
+    kind = Cap
+    power = 1
+    not_for_moves = "a move keeps the joints' limits"
+
+    def use(self, robot: Mechanism, motion: Motion, limits: Limits, slack: Motion) -> Use:
+        """The speed itself."""
+        return _of_tool(robot, motion.tool.velocity, slack.tool.velocity, limits.tool_speed)
+
+    def constraint(self, along: Along, limits: Limits) -> Cap:
+        """v = dp sqrt(x)."""
+        with np.errstate(divide="ignore"):
+            return Cap((np.linalg.norm(along.tool[0], axis=-1) / limits.tool_speed) ** -2.0)
+
+    def highest_over_intervals(self, slopes: SlopesOverIntervals, limits: Limits) -> Array | None:
+        """Where the tool moves, its speed is s'."""
+        return None if limits.tool_speed is None else np.where(slopes.moving, limits.tool_speed**2, np.inf)
+
+    def symbolic(self, motion: SymbolicMotion, limits: Limits) -> ca.SX:
+        """Its square over the cap's."""
+        return ca.sumsqr(motion.tool_velocity) / limits.tool_speed**2  # type: ignore[operator]
+
+
+class ToolAcceleration(InstantLimit):
+    """|a| <= cap."""
+
+    name = "tool acceleration"
+    fields = (ToolField("tool_acceleration", "Of the tool point.", "an acceleration > 0 (m/s^2)", "m/s^2"),)
+    kind = Disc
+    power = 2
+    not_for_moves = "a move keeps the joints' limits"
+
+    def use(self, robot: Mechanism, motion: Motion, limits: Limits, slack: Motion) -> Use:
+        """The acceleration itself."""
+        return _of_tool(robot, motion.tool.acceleration, slack.tool.acceleration, limits.tool_acceleration)
+
+    def constraint(self, along: Along, limits: Limits) -> Disc:
+        """a = dp u + ddp x."""
+        first, second = along.tool
+        return Disc(first / limits.tool_acceleration, second / limits.tool_acceleration)
+
+    def rows_over_intervals(self, over: OverIntervals, limits: Limits) -> IntervalRows | None:
+        """Over the cap."""
+        return None if limits.tool_acceleration is None else over.tool.over(limits.tool_acceleration)
+
+    def symbolic(self, motion: SymbolicMotion, limits: Limits) -> ca.SX:
+        """Its square over the cap's."""
+        return ca.sumsqr(motion.tool_acceleration) / limits.tool_acceleration**2  # type: ignore[operator]
+
+
+def _of_tool(robot: Mechanism, values: Array, away: Array, cap: float | None) -> Use:
+    """The size of a rate of the pose (..., n) at the tool point, (..., 1)."""
+    point = places(robot.pose_names)
+    size = sum(np.linalg.norm(np.atleast_1d(v)[..., :point], axis=-1) for v in (values, away))
+    return against(np.asarray(size)[..., None], None if cap is None else np.array([cap]))
+
+
+TOOL_SPEED, TOOL_ACCELERATION = ToolSpeed(), ToolAcceleration()
