@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from kinematics import InvalidValue
+from kinematics import InvalidField
 
 SPEED_UNIT = "rad/s or m/s"
 
@@ -56,7 +56,7 @@ class ToolField(LimitField):
         """A float."""
         numbers = _positive(self.name, value)
         if not isinstance(value, int | float):
-            raise InvalidValue(f"Limits {self.name}", value, "one number")
+            raise InvalidField("Limits", self.name, value, "one number")
         return numbers[0]
 
 
@@ -70,9 +70,9 @@ class RangeField(LimitField):
             if pairs.ndim not in (1, 2) or pairs.shape[-1] != 2 or not pairs.size:
                 raise ValueError
         except (ValueError, TypeError):
-            raise InvalidValue(f"Limits {self.name}", value, "low < high, or one such pair a joint") from None
+            raise InvalidField("Limits", self.name, value, "low < high, or one such pair a joint") from None
         if not (np.isfinite(pairs).all() and (pairs[..., 0] < pairs[..., 1]).all()):
-            raise InvalidValue(f"Limits {self.name}", value, "finite, low < high")
+            raise InvalidField("Limits", self.name, value, "finite, low < high")
         return tuple(tuple(row) for row in pairs.tolist()) if pairs.ndim == 2 else tuple(pairs.tolist())
 
 
@@ -80,5 +80,5 @@ def _positive(name: str, value: Any) -> tuple[float, ...]:
     items = np.atleast_1d(np.asarray(value, dtype=object)).tolist()
     numbers = [v for v in items if isinstance(v, int | float | np.integer | np.floating) and not isinstance(v, bool)]
     if not items or len(numbers) < len(items) or not all(np.isfinite(v) and v > 0 for v in numbers):
-        raise InvalidValue(f"Limits {name}", value, "finite and > 0")
+        raise InvalidField("Limits", name, value, "finite and > 0")
     return tuple(float(v) for v in numbers)

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from kinematics import Array, InvalidValue, Mechanism
+from kinematics import Array, InvalidField, Mechanism
 from trajectory.limits.acceleration import JOINT_ACCELERATION
 from trajectory.limits.constraints import Along, Constraint
 from trajectory.limits.jerk import JOINT_JERK
@@ -78,7 +78,7 @@ class Limits:
                 if value is not None or field.required:
                     object.__setattr__(self, field.name, field.checked(value))
                 elif any(v is not None for v in values):
-                    raise InvalidValue(f"Limits {field.name}", None, limit.both)
+                    raise InvalidField("Limits", field.name, None, limit.both)
 
     def __iter__(self) -> Iterator[Limit]:
         """Those that are set."""
@@ -116,7 +116,7 @@ class Limits:
         if value is None:
             return None
         if isinstance(value, tuple) and len(value) != count:
-            raise InvalidValue(f"Limits {name}", value, f"one number or {count}, one a joint")
+            raise InvalidField("Limits", name, value, f"one number or {count}, one a joint")
         return np.broadcast_to(np.asarray(value, dtype=float), (count,)).copy()
 
     def set_of_joints(self, name: str, count: int) -> Array:
@@ -131,7 +131,7 @@ class Limits:
             return None
         pairs = np.atleast_2d(np.array(self.position, dtype=float))
         if len(pairs) not in (1, count):
-            raise InvalidValue("Limits position", self.position, f"one range or {count}, one a joint")
+            raise InvalidField("Limits", "position", self.position, f"one range or {count}, one a joint")
         low, high = np.broadcast_to(pairs, (count, 2)).T
         return low, high
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from kinematics import Array, InvalidValue, Mechanism, checked, to_actuators
+from kinematics import Array, InvalidField, InvalidValue, Mechanism, checked, to_actuators
 from trajectory.errors import LimitsExceeded, MoveRefused
 from trajectory.limits import Limits
 from trajectory.moves.joint_line import of_joints, require_at
@@ -148,6 +148,6 @@ def _require_usable(limits: Limits, period: float) -> None:
     for limit in limits:
         if limit.not_for_moves:
             name = limit.fields[0].name
-            raise InvalidValue(f"Limits {name} for a move", getattr(limits, name), f"None: {limit.not_for_moves}")
+            raise InvalidField("Limits", name, getattr(limits, name), f"None: {limit.not_for_moves}", "for a move")
     if not (math.isfinite(period) and period > 0.0):
         raise InvalidValue("period", period, "a finite time > 0 s")

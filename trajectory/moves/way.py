@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics import Array, InvalidValue, JointMotion, Mechanism
+from kinematics import Array, InvalidField, JointMotion, Mechanism
 from trajectory.errors import JointPeak, MoveRefused
 from trajectory.limits import InstantLimit, Limits, uses
 from trajectory.motions import Motion, PoseMotion
@@ -85,7 +85,7 @@ def axis_limits(limits: Limits, count: int) -> AxisLimits:
     def needed(name: str) -> list[float]:
         limit = limits.of_joints(name, count)
         if limit is None:
-            raise InvalidValue(f"Limits {name} for a move", None, "a limit: a jerk-limited move needs it")
+            raise InvalidField("Limits", name, None, "a limit: a jerk-limited move needs it", "for a move")
         return [float(v) for v in limit]
 
     return AxisLimits(needed("speed"), needed("acceleration"), needed("jerk"))

@@ -13,11 +13,12 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 
-from kinematics import Array, InvalidValue, Mechanism, derivatives_along, friction, torques
+from kinematics import Array, Mechanism, derivatives_along, friction, torques
 from trajectory.errors import TimingFailed
+from trajectory.laws import LAWS
 from trajectory.laws.free.interval_nlp import IntervalConstraints, IntervalProgram
-from trajectory.laws.toppra import REFUSED, time_optimal
-from trajectory.limits import JOINT_JERK, Cap, Constraint, Disc, Limits, Linear, Place, Squared, SymbolicMotion, Third
+from trajectory.laws.toppra import time_optimal
+from trajectory.limits import Cap, Constraint, Disc, Limits, Linear, Place, Squared, SymbolicMotion, Third
 from trajectory.motions import PoseSpline
 from trajectory.paths import TOLERANCE, Arch, Path, PoseBounds, bezier_points, places, require_poses_of
 
@@ -52,8 +53,7 @@ def free_motion(
         TimingFailed: the solver did not converge.
     """
     require_poses_of(robot, path)
-    if not JOINT_JERK.is_set(limits):
-        raise InvalidValue("Limits jerk for the free law", None, "a limit: it keeps the jerk")
+    LAWS["free"].require_kept(limits)
     arch = Arch.of(path)
     program = _program(robot, arch, limits, payload, intervals, within)
     guess, end, duration = _guess(robot, path, limits, payload, intervals)
@@ -91,7 +91,7 @@ def _require_clear(arch: Arch, motion: PoseSpline) -> None:
 
 def _guess(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int) -> tuple[Array, Array, float]:
     """From toppra's law: the intervals' starts (k, 4 n) and the end (3 n,), by t / T, and its duration."""
-    plain = limits.without(*REFUSED, Place)
+    plain = limits.without(*LAWS["toppra"].refuses, Place)
     law = time_optimal(robot, path, plain, payload, 1000)
     motion = law.at(np.linspace(0.0, law.duration, intervals + 1))
     velocity = motion.velocity * law.duration

@@ -15,12 +15,13 @@ import math
 
 import numpy as np
 
-from kinematics import Array, InvalidValue, Mechanism
+from kinematics import Array, InvalidField, InvalidValue, Mechanism
 from trajectory.errors import TimingFailed
+from trajectory.laws import LAWS
 from trajectory.laws.at_rest import require_held, require_possible
 from trajectory.laws.toppra.path_rows import PathRows, path_rows
 from trajectory.laws.toppra.reachability import fastest_profile
-from trajectory.limits import Limits, Sloped, Squared, Third
+from trajectory.limits import Limits
 from trajectory.motions import TimedPath, TimeLaw
 from trajectory.paths import Path, require_poses_of, require_smooth
 
@@ -34,11 +35,6 @@ _KEPT = 0.5  # of that: what the intervals that are not halved may leave
 _GRADING = 4.0  # times as long as its neighbour an interval may be: its middle alone does not show what it exceeds
 _TOGETHER = 50  # points, of which the one is named where the weight is furthest beyond a torque
 _ROUNDS = 40  # of halving
-REFUSED = {
-    Third: "its s'' is bang-bang",
-    Sloped: "a limit that falls with the speed is not linear in u and x",
-    Squared: "it is a limit of the whole way, not of an instant",
-}
 
 
 def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = INTERVALS) -> TimedPath:
@@ -85,14 +81,12 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
 
 
 def _require_kept(robot: Mechanism, limits: Limits, payload: float, intervals: int) -> None:
-    for limit in limits:
-        if limit.kind in REFUSED:
-            name, why = limit.fields[0].name, REFUSED[limit.kind]
-            expected = f"no such limit, or another law: {why}"
-            raise InvalidValue(f"Limits {name} for the toppra law", getattr(limits, name), expected)
+    LAWS["toppra"].require_kept(limits)
     viscous = robot.inertia.drive_train.viscous
     if any(limit.of_torque for limit in limits) and np.any(np.asarray(viscous) > 0.0):
-        raise InvalidValue("DriveTrain viscous for the toppra law", viscous, "0: its limits are linear in s'^2, not s'")
+        raise InvalidField(
+            "DriveTrain", "viscous", viscous, "0: its limits are linear in s'^2, not s'", "for the toppra law"
+        )
     if intervals < 1:
         raise InvalidValue("intervals of the toppra law", intervals, "at least 1")
     if not (math.isfinite(payload) and payload >= 0.0):
