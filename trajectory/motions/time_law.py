@@ -11,6 +11,7 @@ import numpy as np
 from kinematics import Array, InvalidField, InvalidShape, InvalidValue, Value, bisected
 from trajectory.paths import located, throughout
 
+_FINEST = 2.0**-60  # of an interval: how closely the time is found at which a place is passed
 _ROUNDING = 1e-9  # of the length or the speed
 _ULPS = 2.0  # of the duration: both knots of an interval are rounded
 _SAME = 1e-13  # of the length: closer knots are one
@@ -173,7 +174,8 @@ class TimeLaw(Value):
         away = apart > _SAME * np.ptp(self.position)
         interval, positions = after[away] - 1, positions[away]
         low, high = np.zeros(interval.size), np.diff(self.times)[interval]
-        return interval, bisected(lambda since: self.inside(interval, since).position < positions, low, high)[0]
+        finest = _FINEST * high
+        return interval, bisected(lambda since: self.inside(interval, since).position < positions, low, high, finest)[0]
 
     def inside(self, interval: Array, since: Array) -> PathMotion:
         """In these intervals (...,), from 0, so long (...,) after each one's start [s]: its one-sided limits too."""

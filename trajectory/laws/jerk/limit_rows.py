@@ -69,7 +69,8 @@ def smoothstep(u: Array) -> tuple[Array, Array, Array, Array]:
 
 def progress_at(share: Array) -> Array:
     """u (k,) where S5 is so much, by bisection."""
-    return bisected(lambda u: smoothstep(u)[0] < share, np.zeros_like(share), np.ones_like(share), _FINEST)[1]
+    low, high = bisected(lambda u: smoothstep(u)[0] < share, np.zeros_like(share), np.ones_like(share), _FINEST)
+    return 0.5 * (low + high)
 
 
 def stations(knots: Array) -> Array:
