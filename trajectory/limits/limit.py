@@ -53,6 +53,7 @@ class Limit(ABC):
         fields: of `Limits`, all of them set or none.
         both: what is asked for where only some of the fields are set.
         kind: of the constraint that it is to a pace on a way.
+        exact: whether a motion within the limit keeps its constraint; false where that asks for more than the limit.
         power: of the pace, with which the quantity grows, about; 0 where no pace changes it.
         of_torque: whether the torque is part of it.
         not_for_moves: why a single move from pose to pose does not keep it; empty where it does.
@@ -62,6 +63,7 @@ class Limit(ABC):
     fields: ClassVar[tuple[LimitField, ...]]
     both: ClassVar[str] = ""
     kind: ClassVar[type[Constraint]]
+    exact: ClassVar[bool] = True
     power: ClassVar[int]
     of_torque: ClassVar[bool] = False
     not_for_moves: ClassVar[str] = ""
