@@ -31,7 +31,7 @@ class JointAcceleration(InstantLimit):
         ),
     )
     kind = Linear
-    power = 2
+    pace_power = 2
 
     def use(self, robot: Mechanism, motion: Motion, limits: LimitValues, slack: Motion) -> Use:  # noqa: ARG002
         """The acceleration itself."""

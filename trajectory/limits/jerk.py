@@ -23,7 +23,7 @@ class JointJerk(InstantLimit):
         ),
     )
     kind = Third
-    power = 3
+    pace_power = 3
     jumps = True
 
     def use(self, robot: Mechanism, motion: Motion, limits: LimitValues, slack: Motion) -> Use:  # noqa: ARG002

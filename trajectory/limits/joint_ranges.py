@@ -23,7 +23,7 @@ class JointRanges(InstantLimit):
         ),
     )
     kind = Place
-    power = 0
+    pace_power = 0
 
     def use(self, robot: Mechanism, motion: Motion, limits: LimitValues, slack: Motion) -> Use | None:  # noqa: ARG002
         """The distance from the middle of the range over half of the range; the limit is the nearer end."""

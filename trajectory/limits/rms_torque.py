@@ -31,7 +31,7 @@ class RmsTorque(MeanSquareLimit):
         ),
     )
     kind = Squared
-    power = 2
+    pace_power = 2
     of_torque = True
 
     def quantity(self, motion: Motion) -> Array:

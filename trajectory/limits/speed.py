@@ -27,7 +27,7 @@ class JointSpeed(InstantLimit):
     name = "joint speed"
     fields = (JointField("speed", "Of the joints.", "a speed > 0, or one a joint", SPEED_UNIT, required=True),)
     kind = Cap
-    power = 1
+    pace_power = 1
 
     def use(self, robot: Mechanism, motion: Motion, limits: LimitValues, slack: Motion) -> Use:  # noqa: ARG002
         """The speed itself."""

@@ -42,7 +42,7 @@ class SpeedTorqueLine(InstantLimit):
     )
     both = "both ends of the speed-torque line, or neither"
     kind = Sloped
-    power = 2
+    pace_power = 2
     of_torque = True
 
     def use(self, robot: Mechanism, motion: Motion, limits: LimitValues, slack: Motion) -> Use | None:  # noqa: ARG002

@@ -30,7 +30,7 @@ class ToolSpeed(InstantLimit):
     name = "tool speed"
     fields = (ToolField("tool_speed", "Of the tool point.", "a speed > 0 (m/s)", "m/s"),)
     kind = Cap
-    power = 1
+    pace_power = 1
     not_for_moves = "a move keeps the joints' limits"
 
     def use(self, robot: Mechanism, motion: Motion, limits: LimitValues, slack: Motion) -> Use:
@@ -58,7 +58,7 @@ class ToolAcceleration(InstantLimit):
     name = "tool acceleration"
     fields = (ToolField("tool_acceleration", "Of the tool point.", "an acceleration > 0 (m/s^2)", "m/s^2"),)
     kind = Disc
-    power = 2
+    pace_power = 2
     not_for_moves = "a move keeps the joints' limits"
 
     def use(self, robot: Mechanism, motion: Motion, limits: LimitValues, slack: Motion) -> Use:

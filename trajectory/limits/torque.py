@@ -30,7 +30,7 @@ class PeakTorque(InstantLimit):
     name = "torque"
     fields = (JointField("torque", "Peak of the drives.", "a number > 0, or one a joint (N m, or N)", "N m or N"),)
     kind = Linear
-    power = 2
+    pace_power = 2
     of_torque = True
 
     def use(self, robot: Mechanism, motion: Motion, limits: LimitValues, slack: Motion) -> Use:  # noqa: ARG002

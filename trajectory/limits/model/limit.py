@@ -52,7 +52,7 @@ class Limit(ABC):
         both: what is asked for where only some of the fields are set.
         kind: of the constraint that it is to a pace on a way.
         exact: whether a motion within the limit keeps its constraint; false where that asks for more than the limit.
-        power: of the pace, with which the quantity grows, about; 0 where no pace changes it.
+        pace_power: of the pace, with which the quantity grows, about; 0 where no pace changes it.
         of_torque: whether the torque is part of it.
         not_for_moves: why a single move from pose to pose does not keep it; empty where it does.
     """
@@ -62,7 +62,7 @@ class Limit(ABC):
     both: ClassVar[str] = ""
     kind: ClassVar[type[Constraint]]
     exact: ClassVar[bool] = True
-    power: ClassVar[int]
+    pace_power: ClassVar[int]
     of_torque: ClassVar[bool] = False
     not_for_moves: ClassVar[str] = ""
 
@@ -81,7 +81,7 @@ class Limit(ABC):
         Raises:
             LimitsExceeded: no factor does.
         """
-        return max(1.0, peak ** (1 / self.power))
+        return max(1.0, peak ** (1 / self.pace_power))
 
     def holding_torque(self, limits: LimitValues, count: int) -> Array | None:  # noqa: ARG002
         """(count,) what it leaves to the drives at rest [N m or N]; None where it limits no torque."""
