@@ -53,7 +53,7 @@ def repair(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float)
     if before.ok:
         return Repaired(timed, 1.0, before, before)
     peaks = before.peak_over_limit
-    paced = {limit.name: limit for limit in limits if limit.power and limit.name in peaks}
+    paced = {limit.name: limit for limit in limits if limit.pace_power and limit.name in peaks}
     mendable = paced.keys() | {f"{name}, proved" for name in paced}
     beyond = {name: value for name, value in before.failures.items() if name not in mendable or not value <= REPAIRABLE}
     if beyond:

@@ -1,24 +1,34 @@
 """Limits, one file a kind: its words, what a motion uses of it, and what it asks of a law."""
 
-from trajectory.limits.constraints import (
+from trajectory.limits.jerk import JOINT_JERK
+from trajectory.limits.joint_ranges import JOINT_RANGES
+from trajectory.limits.limits import LIMITS, Limits, mean_squares, uses
+from trajectory.limits.model import (
+    SPEED_UNIT,
     Along,
     Cap,
     Constraint,
     Disc,
+    InstantLimit,
+    IntervalRows,
+    JointField,
+    Limit,
+    LimitField,
     Linear,
+    MeanSquareLimit,
+    OverIntervals,
     Place,
+    RangeField,
+    Sampled,
     Sloped,
+    SlopesOverIntervals,
     Squared,
+    SymbolicMotion,
     Third,
+    ToolField,
     TorqueAlong,
+    Use,
 )
-from trajectory.limits.field import SPEED_UNIT, JointField, LimitField, RangeField, ToolField
-from trajectory.limits.jerk import JOINT_JERK
-from trajectory.limits.joint_ranges import JOINT_RANGES
-from trajectory.limits.limit import InstantLimit, Limit, MeanSquareLimit, SymbolicMotion, Use
-from trajectory.limits.limits import LIMITS, Limits, mean_squares, uses
-from trajectory.limits.over_intervals import IntervalRows, OverIntervals, SlopesOverIntervals
-from trajectory.limits.stretch import Sampled
 
 __all__ = [
     "JOINT_JERK",

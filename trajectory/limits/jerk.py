@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import casadi as ca
 import numpy as np
 
 from kinematics import Mechanism
-from trajectory.limits.constraints import Along, Third
-from trajectory.limits.field import JointField
-from trajectory.limits.limit import InstantLimit, SymbolicMotion, Use, against
+from trajectory.limits.model import Along, InstantLimit, JointField, LimitValues, SymbolicMotion, Third, Use, against
 from trajectory.motions import Motion
-
-if TYPE_CHECKING:
-    from trajectory.limits.limits import Limits
 
 
 class JointJerk(InstantLimit):
@@ -30,21 +23,21 @@ class JointJerk(InstantLimit):
         ),
     )
     kind = Third
-    power = 3
+    pace_power = 3
     jumps = True
 
-    def use(self, robot: Mechanism, motion: Motion, limits: Limits, slack: Motion) -> Use:  # noqa: ARG002
+    def use(self, robot: Mechanism, motion: Motion, limits: LimitValues, slack: Motion) -> Use:  # noqa: ARG002
         """The jerk itself."""
         jerk = np.abs(motion.joints.third) + slack.joints.third
         return against(jerk, limits.of_joints("jerk", jerk.shape[-1]))
 
-    def constraint(self, along: Along, limits: Limits) -> Third:
+    def constraint(self, along: Along, limits: LimitValues) -> Third:
         """q''' = sqrt(x) (dq z + 3 ddq u + dddq x)."""
         _, first, second, third = along.joints
         limit = limits.set_of_joints("jerk", first.shape[-1])
         return Third(first / limit, 3.0 * second / limit, third / limit)
 
-    def symbolic(self, motion: SymbolicMotion, limits: Limits) -> ca.SX:
+    def symbolic(self, motion: SymbolicMotion, limits: LimitValues) -> ca.SX:
         """Over the limit."""
         jerk = motion.joints[3]
         return jerk / ca.DM(limits.set_of_joints("jerk", jerk.numel()))

@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import casadi as ca
 import numpy as np
 
-from kinematics import Array, Mechanism
-from trajectory.limits.constraints import Along, Place
-from trajectory.limits.field import RangeField
-from trajectory.limits.limit import InstantLimit, SymbolicMotion, Use
+from kinematics import Mechanism
+from trajectory.limits.model import Along, InstantLimit, LimitValues, Place, RangeField, SymbolicMotion, Use
 from trajectory.motions import Motion
-
-if TYPE_CHECKING:
-    from trajectory.limits.limits import Limits
 
 
 class JointRanges(InstantLimit):
@@ -30,33 +23,28 @@ class JointRanges(InstantLimit):
         ),
     )
     kind = Place
-    power = 0
+    pace_power = 0
 
-    def use(self, robot: Mechanism, motion: Motion, limits: Limits, slack: Motion) -> Use | None:  # noqa: ARG002
+    def use(self, robot: Mechanism, motion: Motion, limits: LimitValues, slack: Motion) -> Use | None:  # noqa: ARG002
         """The distance from the middle of the range over half of the range; the limit is the nearer end."""
         position = motion.joints.position
-        if not self.is_set(limits):
+        if (ranges := limits.ranges(position.shape[-1])) is None:
             return None
-        middle, half = self._middles(limits, position.shape[-1])
+        middle, half = (ranges[1] + ranges[0]) / 2, (ranges[1] - ranges[0]) / 2
         away = position - middle
         return Use(position, middle + np.copysign(half, away), (np.abs(away) + slack.joints.position) / half)
 
-    def constraint(self, along: Along, limits: Limits) -> Place:  # noqa: ARG002
+    def constraint(self, along: Along, limits: LimitValues) -> Place:  # noqa: ARG002
         """Nothing of the pace."""
         return Place()
 
-    def symbolic(self, motion: SymbolicMotion, limits: Limits) -> ca.SX:
-        """As in `use`, with its sign."""
+    def symbolic(self, motion: SymbolicMotion, limits: LimitValues) -> ca.SX:
+        """From -1 at the lowest position to 1 at the highest."""
         position = motion.joints[0]
-        middle, half = self._middles(limits, position.numel())
-        return (position - ca.DM(middle)) / ca.DM(half)
-
-    @staticmethod
-    def _middles(limits: Limits, count: int) -> tuple[Array, Array]:
-        """(count,) middles and half widths."""
-        ranges = limits.ranges(count)
+        ranges = limits.ranges(position.numel())
         assert ranges is not None
-        return (ranges[1] + ranges[0]) / 2, (ranges[1] - ranges[0]) / 2
+        low, high = (ca.DM(end) for end in ranges)
+        return (2 * position - (low + high)) / (high - low)
 
 
 JOINT_RANGES = JointRanges()

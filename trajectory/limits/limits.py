@@ -6,14 +6,11 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from typing import Any, TypeVar
 
-import numpy as np
-
-from kinematics import Array, InvalidField, Mechanism
+from kinematics import InvalidField, Mechanism
 from trajectory.limits.acceleration import JOINT_ACCELERATION
-from trajectory.limits.constraints import Along, Constraint
 from trajectory.limits.jerk import JOINT_JERK
 from trajectory.limits.joint_ranges import JOINT_RANGES
-from trajectory.limits.limit import NO_SLACK, InstantLimit, Limit, MeanSquareLimit, Use
+from trajectory.limits.model import NO_SLACK, Along, Constraint, InstantLimit, Limit, LimitValues, MeanSquareLimit, Use
 from trajectory.limits.rms_torque import RMS_TORQUE
 from trajectory.limits.speed import JOINT_SPEED
 from trajectory.limits.speed_torque_line import SPEED_TORQUE_LINE
@@ -40,7 +37,7 @@ LIMITS: tuple[Limit, ...] = (
 
 
 @dataclass(frozen=True)
-class Limits:
+class Limits(LimitValues):
     """Limits, each but the position the same in both directions; None is no limit. A joint limit is one number (one
     range) or one a joint; where drives couple the joints, as the Peppermill's do, it holds at the actuators. What each
     field means, its limit in `LIMITS` says.
@@ -101,39 +98,6 @@ class Limits:
         """What the limits of a kind ask of a pace on a way."""
         found = [limit.constraint(along, self) for limit in self if issubclass(limit.kind, kind)]
         return [constraint for constraint in found if isinstance(constraint, kind)]
-
-    def of_joints(self, name: str, count: int) -> Array | None:
-        """(count,) a joint limit, None where there is none.
-
-        Args:
-            name: any field but those of the tool and the position.
-            count: number of joints of the robot.
-
-        Raises:
-            InvalidValue: the limit is given for another number of joints.
-        """
-        value = getattr(self, name)
-        if value is None:
-            return None
-        if isinstance(value, tuple) and len(value) != count:
-            raise InvalidField("Limits", name, value, f"one number or {count}, one a joint")
-        return np.broadcast_to(np.asarray(value, dtype=float), (count,)).copy()
-
-    def set_of_joints(self, name: str, count: int) -> Array:
-        """(count,) as `of_joints`, of a limit that is set."""
-        limit = self.of_joints(name, count)
-        assert limit is not None, name
-        return limit
-
-    def ranges(self, count: int) -> tuple[Array, Array] | None:
-        """(count,) lowest and (count,) highest positions, None where there is no limit; errors as `of_joints`."""
-        if self.position is None:
-            return None
-        pairs = np.atleast_2d(np.array(self.position, dtype=float))
-        if len(pairs) not in (1, count):
-            raise InvalidField("Limits", "position", self.position, f"one range or {count}, one a joint")
-        low, high = np.broadcast_to(pairs, (count, 2)).T
-        return low, high
 
     def as_dict(self) -> dict[str, object]:
         """The limits that are set; a list for one a joint."""

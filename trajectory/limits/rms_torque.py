@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import casadi as ca
 
 from kinematics import Array
-from trajectory.limits.constraints import Along, Squared
-from trajectory.limits.field import JointField
-from trajectory.limits.limit import MeanSquareLimit, SymbolicMotion
-from trajectory.limits.stretch import Sampled, stretch_of_mean_square
+from trajectory.limits.model import (
+    Along,
+    JointField,
+    LimitValues,
+    MeanSquareLimit,
+    Sampled,
+    Squared,
+    SymbolicMotion,
+    stretch_of_mean_square,
+)
 from trajectory.motions import ByRate, Motion
-
-if TYPE_CHECKING:
-    from trajectory.limits.limits import Limits
 
 
 class RmsTorque(MeanSquareLimit):
@@ -30,7 +31,7 @@ class RmsTorque(MeanSquareLimit):
         ),
     )
     kind = Squared
-    power = 2
+    pace_power = 2
     of_torque = True
 
     def quantity(self, motion: Motion) -> Array:
@@ -41,11 +42,11 @@ class RmsTorque(MeanSquareLimit):
         """The torque's own."""
         return slack.torque, mean_torque
 
-    def most(self, limits: Limits, count: int) -> Array | None:
+    def most(self, limits: LimitValues, count: int) -> Array | None:
         """The limit."""
         return limits.of_joints("rms_torque", count)
 
-    def least_stretch(self, peak: float, motion: Sampled, limits: Limits) -> float:  # noqa: ARG002
+    def least_stretch(self, peak: float, motion: Sampled, limits: LimitValues) -> float:  # noqa: ARG002
         """The largest of all drives."""
         torque = motion.torque
         most = limits.set_of_joints("rms_torque", torque.constant.shape[-1])
@@ -56,17 +57,17 @@ class RmsTorque(MeanSquareLimit):
         ]
         return max(factors)
 
-    def holding_torque(self, limits: Limits, count: int) -> Array | None:
+    def holding_torque(self, limits: LimitValues, count: int) -> Array | None:
         """In the mean."""
         return self.most(limits, count)
 
-    def constraint(self, along: Along, limits: Limits) -> Squared:
+    def constraint(self, along: Along, limits: LimitValues) -> Squared:
         """Over the limit, with all friction."""
         t = along.torque
         limit = limits.set_of_joints("rms_torque", t.inertia.shape[-1])
         return Squared(t.inertia / limit, t.square / limit, t.viscous / limit, t.whole / limit)
 
-    def symbolic(self, motion: SymbolicMotion, limits: Limits) -> ca.SX:
+    def symbolic(self, motion: SymbolicMotion, limits: LimitValues) -> ca.SX:
         """Over the limit."""
         return motion.torque / ca.DM(limits.set_of_joints("rms_torque", motion.torque.numel()))
 

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import casadi as ca
 import numpy as np
 
 from kinematics import Array, Mechanism
-from trajectory.limits.constraints import Along, Sloped, torque_over
-from trajectory.limits.field import SPEED_UNIT, JointField
-from trajectory.limits.limit import InstantLimit, SymbolicMotion, Use
-from trajectory.limits.stretch import Sampled, stretch_of_sum
+from trajectory.limits.model import (
+    SPEED_UNIT,
+    Along,
+    InstantLimit,
+    JointField,
+    LimitValues,
+    Sampled,
+    Sloped,
+    SymbolicMotion,
+    Use,
+    stretch_of_sum,
+    torque_over,
+)
 from trajectory.motions import Motion
-
-if TYPE_CHECKING:
-    from trajectory.limits.limits import Limits
 
 
 class SpeedTorqueLine(InstantLimit):
@@ -38,10 +42,10 @@ class SpeedTorqueLine(InstantLimit):
     )
     both = "both ends of the speed-torque line, or neither"
     kind = Sloped
-    power = 2
+    pace_power = 2
     of_torque = True
 
-    def use(self, robot: Mechanism, motion: Motion, limits: Limits, slack: Motion) -> Use | None:  # noqa: ARG002
+    def use(self, robot: Mechanism, motion: Motion, limits: LimitValues, slack: Motion) -> Use | None:  # noqa: ARG002
         """|tau| / stall_torque + |q'| / no_load_speed."""
         if not self.is_set(limits):
             return None
@@ -50,30 +54,30 @@ class SpeedTorqueLine(InstantLimit):
         share = (np.abs(motion.joints.first) + slack.joints.first) / fastest
         return Use(torque, stall * (1.0 - share), torque / stall + share)
 
-    def least_stretch(self, peak: float, motion: Sampled, limits: Limits) -> float:  # noqa: ARG002
+    def least_stretch(self, peak: float, motion: Sampled, limits: LimitValues) -> float:  # noqa: ARG002
         """As of the torque, with the speed beside it."""
         speed = np.abs(motion.joints.first)
         stall, fastest = self._ends(limits, speed.shape[-1])
         return stretch_of_sum(self.name, motion.torque, stall, stall / fastest * speed)
 
-    def holding_torque(self, limits: Limits, count: int) -> Array | None:
+    def holding_torque(self, limits: LimitValues, count: int) -> Array | None:
         """At stall."""
         return limits.of_joints("stall_torque", count)
 
-    def constraint(self, along: Along, limits: Limits) -> Sloped:
+    def constraint(self, along: Along, limits: LimitValues) -> Sloped:
         """|q'| = |dq| sqrt(x)."""
         slopes = np.abs(along.joints.first)
         stall, fastest = self._ends(limits, slopes.shape[-1])
         return Sloped(*torque_over(stall, along.torque), slopes / fastest)
 
-    def symbolic(self, motion: SymbolicMotion, limits: Limits) -> ca.SX:
+    def symbolic(self, motion: SymbolicMotion, limits: LimitValues) -> ca.SX:
         """|tau| <= t - s and |s| <= t where t - s >= |tau| and t + s >= |tau|, whatever the signs."""
         stall, fastest = self._ends(limits, motion.torque.numel())
         torque, share = motion.torque / ca.DM(stall), motion.joints[1] / ca.DM(fastest)
         return ca.vertcat(torque + share, torque - share)
 
     @staticmethod
-    def _ends(limits: Limits, count: int) -> tuple[Array, Array]:
+    def _ends(limits: LimitValues, count: int) -> tuple[Array, Array]:
         """(count,) stall torques and no-load speeds."""
         return limits.set_of_joints("stall_torque", count), limits.set_of_joints("no_load_speed", count)
 

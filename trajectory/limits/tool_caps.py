@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import casadi as ca
 import numpy as np
 
 from kinematics import Array, Mechanism
-from trajectory.limits.constraints import Along, Cap, Disc
-from trajectory.limits.field import ToolField
-from trajectory.limits.limit import InstantLimit, SymbolicMotion, Use, against
-from trajectory.limits.over_intervals import IntervalRows, OverIntervals, SlopesOverIntervals
+from trajectory.limits.model import (
+    Along,
+    Cap,
+    Disc,
+    InstantLimit,
+    IntervalRows,
+    LimitValues,
+    OverIntervals,
+    SlopesOverIntervals,
+    SymbolicMotion,
+    ToolField,
+    Use,
+    against,
+)
 from trajectory.motions import Motion
 from trajectory.paths import places
-
-if TYPE_CHECKING:
-    from trajectory.limits.limits import Limits
 
 
 class ToolSpeed(InstantLimit):
@@ -25,25 +30,26 @@ class ToolSpeed(InstantLimit):
     name = "tool speed"
     fields = (ToolField("tool_speed", "Of the tool point.", "a speed > 0 (m/s)", "m/s"),)
     kind = Cap
-    power = 1
+    pace_power = 1
     not_for_moves = "a move keeps the joints' limits"
 
-    def use(self, robot: Mechanism, motion: Motion, limits: Limits, slack: Motion) -> Use:
+    def use(self, robot: Mechanism, motion: Motion, limits: LimitValues, slack: Motion) -> Use:
         """The speed itself."""
-        return _of_tool(robot, motion.tool.velocity, slack.tool.velocity, limits.tool_speed)
+        return _of_tool(robot, motion.tool.velocity, slack.tool.velocity, limits.of_tool("tool_speed"))
 
-    def constraint(self, along: Along, limits: Limits) -> Cap:
+    def constraint(self, along: Along, limits: LimitValues) -> Cap:
         """v = dp sqrt(x)."""
         with np.errstate(divide="ignore"):
-            return Cap((np.linalg.norm(along.tool[0], axis=-1) / limits.tool_speed) ** -2.0)
+            return Cap((np.linalg.norm(along.tool[0], axis=-1) / limits.set_of_tool("tool_speed")) ** -2.0)
 
-    def highest_over_intervals(self, slopes: SlopesOverIntervals, limits: Limits) -> Array | None:
+    def highest_over_intervals(self, slopes: SlopesOverIntervals, limits: LimitValues) -> Array | None:
         """Where the tool moves, its speed is s'."""
-        return None if limits.tool_speed is None else np.where(slopes.moving, limits.tool_speed**2, np.inf)
+        cap = limits.of_tool("tool_speed")
+        return None if cap is None else np.where(slopes.moving, cap**2, np.inf)
 
-    def symbolic(self, motion: SymbolicMotion, limits: Limits) -> ca.SX:
+    def symbolic(self, motion: SymbolicMotion, limits: LimitValues) -> ca.SX:
         """Its square over the cap's."""
-        return ca.sumsqr(motion.tool_velocity) / limits.tool_speed**2  # type: ignore[operator]
+        return ca.sumsqr(motion.tool_velocity) / limits.set_of_tool("tool_speed") ** 2
 
 
 class ToolAcceleration(InstantLimit):
@@ -52,25 +58,26 @@ class ToolAcceleration(InstantLimit):
     name = "tool acceleration"
     fields = (ToolField("tool_acceleration", "Of the tool point.", "an acceleration > 0 (m/s^2)", "m/s^2"),)
     kind = Disc
-    power = 2
+    pace_power = 2
     not_for_moves = "a move keeps the joints' limits"
 
-    def use(self, robot: Mechanism, motion: Motion, limits: Limits, slack: Motion) -> Use:
+    def use(self, robot: Mechanism, motion: Motion, limits: LimitValues, slack: Motion) -> Use:
         """The acceleration itself."""
-        return _of_tool(robot, motion.tool.acceleration, slack.tool.acceleration, limits.tool_acceleration)
+        return _of_tool(robot, motion.tool.acceleration, slack.tool.acceleration, limits.of_tool("tool_acceleration"))
 
-    def constraint(self, along: Along, limits: Limits) -> Disc:
+    def constraint(self, along: Along, limits: LimitValues) -> Disc:
         """a = dp u + ddp x."""
-        first, second = along.tool
-        return Disc(first / limits.tool_acceleration, second / limits.tool_acceleration)
+        (first, second), cap = along.tool, limits.set_of_tool("tool_acceleration")
+        return Disc(first / cap, second / cap)
 
-    def rows_over_intervals(self, over: OverIntervals, limits: Limits) -> IntervalRows | None:
+    def rows_over_intervals(self, over: OverIntervals, limits: LimitValues) -> IntervalRows | None:
         """Over the cap."""
-        return None if limits.tool_acceleration is None else over.tool.over(limits.tool_acceleration)
+        cap = limits.of_tool("tool_acceleration")
+        return None if cap is None else over.tool.over(cap)
 
-    def symbolic(self, motion: SymbolicMotion, limits: Limits) -> ca.SX:
+    def symbolic(self, motion: SymbolicMotion, limits: LimitValues) -> ca.SX:
         """Its square over the cap's."""
-        return ca.sumsqr(motion.tool_acceleration) / limits.tool_acceleration**2  # type: ignore[operator]
+        return ca.sumsqr(motion.tool_acceleration) / limits.set_of_tool("tool_acceleration") ** 2
 
 
 def _of_tool(robot: Mechanism, values: Array, away: Array, cap: float | None) -> Use:

@@ -51,7 +51,7 @@ def of_pose(
         found = peaks(robot, way, limits)
         if max(peak.ratio for peak in found.values()) <= 1.0 + ROUNDING:
             return way
-        slower *= max(_SLOWER, *(peak.ratio ** (1 / limit.power) for limit, peak in found.items()))
+        slower *= max(_SLOWER, *(peak.ratio ** (1 / limit.pace_power) for limit, peak in found.items()))
     raise LimitsExceeded.of_peaks({limit.name: peak for limit, peak in found.items() if peak.ratio > 1.0})
 
 

@@ -44,7 +44,7 @@ def peaks(robot: Mechanism, way: Way, limits: Limits) -> dict[InstantLimit, Join
     """Each limited quantity of the joints that depends on the pace, where it is largest over its limit."""
     found = {}
     for limit, use in uses(robot, way.motion, limits).items():
-        if use.limit is not None and use.ratio is not None and limit.power:
+        if use.limit is not None and use.ratio is not None and limit.pace_power:
             row, joint = np.unravel_index(int(use.ratio.argmax()), use.ratio.shape)
             at = float(use.value[row, joint]), float(use.limit[row, joint]), float(use.ratio[row, joint])
             found[limit] = JointPeak(robot.actuator_names[joint], float(way.times[row]), *at)

@@ -105,6 +105,8 @@ def _after(cruise: Array, pace: TimeLaw) -> TimeLaw:
 
 
 def _pace(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float, margin: float) -> TimeLaw:
+    """The constraints that ask for more than their limit are left out: the motion itself would not keep them."""
+    limits = limits.less(*(limit for limit in limits if not limit.exact))
     if not limits.has(Third):
         return braking(robot, timed, start, limits, payload)
     return smooth_braking(robot, timed, start, limits, payload, margin)

@@ -7,20 +7,18 @@ the limit's own numbers.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import casadi as ca
 import numpy as np
 
 from kinematics import Array, JointMotion, Mechanism
-from trajectory.limits.constraints import Along, Constraint
-from trajectory.limits.field import LimitField
-from trajectory.limits.over_intervals import IntervalRows, OverIntervals, SlopesOverIntervals
-from trajectory.limits.stretch import Sampled
+from trajectory.limits.model.constraints import Along, Constraint
+from trajectory.limits.model.field import LimitField
+from trajectory.limits.model.over_intervals import IntervalRows, OverIntervals, SlopesOverIntervals
+from trajectory.limits.model.stretch import Sampled
+from trajectory.limits.model.values import LimitValues
 from trajectory.motions import Motion, PoseMotion
-
-if TYPE_CHECKING:
-    from trajectory.limits.limits import Limits
 
 NO_SLACK = Motion(PoseMotion(*np.zeros(4)), JointMotion(*np.zeros(4)), np.zeros(1))
 
@@ -53,7 +51,8 @@ class Limit(ABC):
         fields: of `Limits`, all of them set or none.
         both: what is asked for where only some of the fields are set.
         kind: of the constraint that it is to a pace on a way.
-        power: of the pace, with which the quantity grows, about; 0 where no pace changes it.
+        exact: whether a motion within the limit keeps its constraint; false where that asks for more than the limit.
+        pace_power: of the pace, with which the quantity grows, about; 0 where no pace changes it.
         of_torque: whether the torque is part of it.
         not_for_moves: why a single move from pose to pose does not keep it; empty where it does.
     """
@@ -62,15 +61,16 @@ class Limit(ABC):
     fields: ClassVar[tuple[LimitField, ...]]
     both: ClassVar[str] = ""
     kind: ClassVar[type[Constraint]]
-    power: ClassVar[int]
+    exact: ClassVar[bool] = True
+    pace_power: ClassVar[int]
     of_torque: ClassVar[bool] = False
     not_for_moves: ClassVar[str] = ""
 
-    def is_set(self, limits: Limits) -> bool:
+    def is_set(self, limits: LimitValues) -> bool:
         """Whether a motion has to keep it."""
         return getattr(limits, self.fields[0].name) is not None
 
-    def least_stretch(self, peak: float, motion: Sampled, limits: Limits) -> float:  # noqa: ARG002
+    def least_stretch(self, peak: float, motion: Sampled, limits: LimitValues) -> float:  # noqa: ARG002
         """The least factor, at least 1, by which stretching the time brings a motion within the limit.
 
         Args:
@@ -81,29 +81,29 @@ class Limit(ABC):
         Raises:
             LimitsExceeded: no factor does.
         """
-        return max(1.0, peak ** (1 / self.power))
+        return max(1.0, peak ** (1 / self.pace_power))
 
-    def holding_torque(self, limits: Limits, count: int) -> Array | None:  # noqa: ARG002
+    def holding_torque(self, limits: LimitValues, count: int) -> Array | None:  # noqa: ARG002
         """(count,) what it leaves to the drives at rest [N m or N]; None where it limits no torque."""
         return None
 
     @abstractmethod
-    def constraint(self, along: Along, limits: Limits) -> Constraint:
+    def constraint(self, along: Along, limits: LimitValues) -> Constraint:
         """What it asks of a pace on a way, of its `kind`."""
 
-    def highest_over_intervals(self, slopes: SlopesOverIntervals, limits: Limits) -> Array | None:  # noqa: ARG002
+    def highest_over_intervals(self, slopes: SlopesOverIntervals, limits: LimitValues) -> Array | None:  # noqa: ARG002
         """(k,) the largest x in intervals of a path [m^2/s^2]; None where it bounds none by itself.
 
         Bounds of the least time leave out what gives neither this nor `rows_over_intervals`, which is safe.
         """
         return None
 
-    def rows_over_intervals(self, over: OverIntervals, limits: Limits) -> IntervalRows | None:  # noqa: ARG002
+    def rows_over_intervals(self, over: OverIntervals, limits: LimitValues) -> IntervalRows | None:  # noqa: ARG002
         """What it asks in intervals of a path."""
         return None
 
     @abstractmethod
-    def symbolic(self, motion: SymbolicMotion, limits: Limits) -> ca.SX:
+    def symbolic(self, motion: SymbolicMotion, limits: LimitValues) -> ca.SX:
         """What it keeps between -1 and 1; of a mean square the quantity over its limit."""
 
 
@@ -117,7 +117,7 @@ class InstantLimit(Limit):
     jumps: ClassVar[bool] = False
 
     @abstractmethod
-    def use(self, robot: Mechanism, motion: Motion, limits: Limits, slack: Motion) -> Use | None:
+    def use(self, robot: Mechanism, motion: Motion, limits: LimitValues, slack: Motion) -> Use | None:
         """What a motion uses of it, sample by sample; None where there is nothing to tell without a limit.
 
         Args:
@@ -150,7 +150,7 @@ class MeanSquareLimit(Limit):
         """
 
     @abstractmethod
-    def most(self, limits: Limits, count: int) -> Array | None:
+    def most(self, limits: LimitValues, count: int) -> Array | None:
         """(count,) of the root mean square; None where it is not set."""
 
 
