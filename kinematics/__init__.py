@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from kinematics.arguments import finite, positive, whole
-from kinematics.arrays import Array, checked
+from kinematics.arrays import Array, Value, checked
 from kinematics.dynamics import (
     JointMotion,
     actuator_motion,
@@ -15,7 +15,15 @@ from kinematics.dynamics import (
     to_actuators,
     torques,
 )
-from kinematics.errors import InvalidGeometry, InvalidShape, InvalidValue, LinkwrightError, UnreachablePose, plain
+from kinematics.errors import (
+    InvalidField,
+    InvalidGeometry,
+    InvalidShape,
+    InvalidValue,
+    LinkwrightError,
+    UnreachablePose,
+    plain,
+)
 from kinematics.evaluation import (
     CORES,
     BlockProgram,
@@ -26,10 +34,11 @@ from kinematics.evaluation import (
     enclose,
     evaluate,
     over_spans,
-    replay,
+    run_through,
 )
 from kinematics.machine import UNIFORM, DriveTrain, GeometryRecord, InertiaRecord, JointRanges
 from kinematics.margins import CLEARANCE, PASSIVE_JOINT, STANDARD
+from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
 from kinematics.model import (
     ClaimSymbols,
@@ -75,6 +84,7 @@ __all__ = [
     "Heli4",
     "Hexa",
     "InertiaRecord",
+    "InvalidField",
     "InvalidGeometry",
     "InvalidShape",
     "InvalidValue",
@@ -100,7 +110,9 @@ __all__ = [
     "SingularArchitecture",
     "ToShow",
     "UnreachablePose",
+    "Value",
     "actuator_motion",
+    "bisected",
     "bulk",
     "by_name",
     "checked",
@@ -119,9 +131,9 @@ __all__ = [
     "over_spans",
     "plain",
     "positive",
-    "replay",
     "rounded_down",
     "rounded_up",
+    "run_through",
     "sides",
     "to_actuators",
     "torques",

@@ -1,12 +1,50 @@
-"""Arrays that come from outside: real numbers of the shape that is asked for."""
+"""Arrays: those that come from outside, checked, and records with arrays, which compare by value."""
 
 from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
 
 import numpy as np
 
 from kinematics.errors import InvalidShape, InvalidValue
 
 Array = np.ndarray
+
+
+class Value:
+    """A frozen dataclass that may hold arrays, made with `eq=False`; equal where all of its fields are.
+
+    Arrays are equal where their shapes and all numbers are; NaN is equal to NaN there.
+    """
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and all(map(_same, _fields(self), _fields(other)))
+
+    def __hash__(self) -> int:
+        return hash((type(self), *map(_key, _fields(self))))
+
+
+def _fields(value: Any) -> list[Any]:
+    return [getattr(value, field.name) for field in fields(value)]
+
+
+def _same(first: Any, second: Any) -> bool:
+    if isinstance(first, np.ndarray) or isinstance(second, np.ndarray):
+        numbers = np.asarray(first).dtype.kind in "fc"
+        return bool(np.array_equal(first, second, equal_nan=numbers and np.asarray(second).dtype.kind in "fc"))
+    if isinstance(first, tuple) and type(first) is type(second):
+        return len(first) == len(second) and all(map(_same, first, second))
+    return bool(first == second)
+
+
+def _key(value: Any) -> Any:
+    """Equal for equal values: the shape of an array, and the keys of a mapping, stand for them."""
+    if isinstance(value, np.ndarray):
+        return value.shape
+    if isinstance(value, tuple):
+        return tuple(map(_key, value))
+    return tuple(value) if isinstance(value, dict) else value
 
 
 def checked(values: Array, what: str, names: tuple[str, ...]) -> Array:

@@ -58,3 +58,11 @@ class InvalidValue(LinkwrightError):
     def __init__(self, what: str, found: object, expected: str) -> None:
         self.what, self.found, self.expected = what, found, expected
         super().__init__(f"{what}: found {plain(found)}; expected {expected}")
+
+
+class InvalidField(InvalidValue):
+    """A field of a record has a value that it cannot have; `use` says for what it cannot, "" for anything."""
+
+    def __init__(self, record: str, field: str, found: object, expected: str, use: str = "") -> None:
+        self.record, self.field, self.use = record, field, use
+        super().__init__(" ".join(filter(None, (record, field, use))), found, expected)

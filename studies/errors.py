@@ -14,7 +14,7 @@ _LONGEST_FOUND = 80  # characters
 
 
 @dataclass(frozen=True)
-class Problem:
+class Fault:
     """One thing to mend: `key` of `file` at `line` holds `found`, where `expected` was asked.
 
     `key` is "" and `line` None when the file as a whole is meant.
@@ -33,20 +33,20 @@ class Problem:
 
 
 class StudyError(LinkwrightError):
-    """A study file cannot be used; `str()` gives one line a problem.
+    """A study file cannot be used; `str()` gives one line a fault.
 
-    `problems` holds them all by line; `file`, `key`, `line`, `found`, `expected` are the first one's.
+    `faults` holds them all by line; `file`, `key`, `line`, `found`, `expected` are the first one's.
     """
 
-    def __init__(self, problems: Sequence[Problem]) -> None:
-        super().__init__(problems)
-        self.problems = tuple(sorted(problems, key=lambda problem: problem.line or 0))
-        first = self.problems[0]
+    def __init__(self, faults: Sequence[Fault]) -> None:
+        super().__init__(faults)
+        self.faults = tuple(sorted(faults, key=lambda fault: fault.line or 0))
+        first = self.faults[0]
         self.file, self.key, self.line = first.file, first.key, first.line
         self.found, self.expected = first.found, first.expected
 
     def __str__(self) -> str:
-        return "\n".join(map(str, self.problems))
+        return "\n".join(map(str, self.faults))
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,7 @@ def test_the_page_names_every_hook():
     optional = {
         "drives",
         "passive_joints",
+        "link_tree",
         "segment_pairs",
         "actuator_names",
         "actuator_units",

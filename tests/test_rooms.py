@@ -75,7 +75,8 @@ def test_the_check_sees_imports_wherever_they_hide() -> None:
 def test_what_verifies_a_motion_knows_nothing_of_what_made_it() -> None:
     """It may know what a path, a motion and a limit are."""
     known = {room for room in reached_rooms("trajectory.verification") if room.startswith("trajectory")}
-    assert known == {"trajectory", "trajectory.verification", "trajectory.motions", "trajectory.paths"}
+    models = {"trajectory", "trajectory.motions", "trajectory.paths", "trajectory.limits", "trajectory.limits.model"}
+    assert known == {"trajectory.verification", *models}
 
 
 def test_no_law_imports_what_verifies_it() -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from trajectory.cycles import Cycle, Piece, Repaired, Timing, repair, there_and_back
+from trajectory.cycles import Cycle, Piece, Repaired, repair, there_and_back
 from trajectory.errors import (
     InvalidPath,
     LimitsExceeded,
@@ -18,11 +18,13 @@ from trajectory.errors import (
     RoughPath,
     SetpointFileError,
     TimingFailed,
+    UnsuitedPath,
     WaypointFileError,
 )
 from trajectory.files import CannotWrite, require_writable, write_files
+from trajectory.laws import LAWS, Law, TimingLaw, law_named
 from trajectory.laws.bounds import lower_bound
-from trajectory.limits import Limits
+from trajectory.limits import LIMITS, SPEED_UNIT, JointField, Limit, LimitField, Limits, RangeField, ToolField
 from trajectory.motions import (
     Motion,
     PathMotion,
@@ -74,12 +76,19 @@ def __getattr__(name: str) -> Any:
 
 
 __all__ = [
+    "LAWS",
+    "LIMITS",
+    "SPEED_UNIT",
     "STANDARD_SIZES",
     "AdeptCycle",
     "CannotWrite",
     "Cycle",
     "EmergencyStop",
     "InvalidPath",
+    "JointField",
+    "Law",
+    "Limit",
+    "LimitField",
     "Limits",
     "LimitsExceeded",
     "Motion",
@@ -96,6 +105,7 @@ __all__ = [
     "PoseBounds",
     "PoseMotion",
     "PoseSpline",
+    "RangeField",
     "Repaired",
     "Reversed",
     "RoughPath",
@@ -105,8 +115,10 @@ __all__ = [
     "TimeLaw",
     "TimedMotion",
     "TimedPath",
-    "Timing",
     "TimingFailed",
+    "TimingLaw",
+    "ToolField",
+    "UnsuitedPath",
     "Verification",
     "Way",
     "WaypointFileError",
@@ -116,6 +128,7 @@ __all__ = [
     "free_motion",
     "in_si",
     "jerk_limited",
+    "law_named",
     "lower_bound",
     "motion_of",
     "pieces",

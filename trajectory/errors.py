@@ -36,6 +36,14 @@ class InvalidPath(InvalidValue):
         super().__init__(f"{field} of pose {pose} of the path", found, expected)
 
 
+class UnsuitedPath(InvalidValue):
+    """A timing law does not take a path of this kind."""
+
+    def __init__(self, law: str, found: str, expected: str) -> None:
+        self.law = law
+        super().__init__(f"path of the {law} law", found, expected)
+
+
 class PathRefused(LinkwrightError):
     """A path passes where a limb cannot reach or the robot is singular, or could not be proved not to.
 
@@ -65,7 +73,7 @@ class PathBeyondLimit(LinkwrightError):
     """A path passes a pose that breaks a limit however it is travelled.
 
     `limit` is the field of the limits, `at` the arc length [m], `found` the joint's value beyond `allowed`, SI: its
-    position or, of a torque limit, what the weight alone asks of it at rest. `waypoint` is the nearest, from 1.
+    position or, with `of_torque`, what the weight alone asks of it at rest. `waypoint` is the nearest, from 1.
     """
 
     exit_status = 1
@@ -73,6 +81,7 @@ class PathBeyondLimit(LinkwrightError):
     def __init__(
         self,
         limit: str,
+        of_torque: bool,
         joint: str,
         at: float,
         pose: Sequence[float],
@@ -81,11 +90,11 @@ class PathBeyondLimit(LinkwrightError):
         unit: str,
         waypoint: int | None = None,
     ) -> None:
-        self.limit, self.joint, self.at, self.found, self.allowed = limit, joint, at, found, allowed
+        self.limit, self.of_torque, self.joint, self.at = limit, of_torque, joint, at
+        self.found, self.allowed = found, allowed
         self.pose, self.waypoint = tuple(float(v) for v in pose), waypoint
-        of_weight = limit != "position"
         what = (
-            f"the weight alone, at rest, asks {joint} for a torque of" if of_weight else f"the position of {joint} is"
+            f"the weight alone, at rest, asks {joint} for a torque of" if of_torque else f"the position of {joint} is"
         )
         super().__init__(
             f"{_place(at, self.pose, waypoint)}: {what} {found:.6g} {unit}; "
@@ -119,17 +128,16 @@ class TimingFailed(LinkwrightError):
 
 
 class JointPeak(NamedTuple):
-    """Where a limited quantity is largest over its limit: the joint, when [s], the value there and the limit, SI."""
+    """Where a limited quantity is largest over its limit: the joint, when [s], the value there and the limit, SI.
+
+    `ratio` is how much of the limit is used.
+    """
 
     joint: str
     time: float
     value: float
     limit: float
-
-    @property
-    def ratio(self) -> float:
-        """Its size over the limit."""
-        return abs(self.value) / self.limit
+    ratio: float
 
     def __str__(self) -> str:
         return f"{self.joint} at t = {self.time:.6g} s: {self.value:.6g}, limit {self.limit:.6g}"

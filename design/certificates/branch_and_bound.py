@@ -16,14 +16,14 @@ from design.certificates.lower_bounds import LowerBounds
 from design.certificates.refutation import Refutation, Refuter
 from design.certificates.symmetry import Mirrors, one_side
 from design.regions import Region
-from kinematics import Array
+from kinematics import Array, Value
 
 SMALLEST = 1e-6  # boxes narrower than this part of the region in every coordinate are not cut
 _MOST_SMALL = 1000  # of those, before the search ends
 
 
-@dataclass(frozen=True)
-class Search:
+@dataclass(frozen=True, eq=False)
+class Search(Value):
     """What the search came to.
 
     Attributes:

@@ -29,7 +29,7 @@ from design.certificates.symmetry import Mirrors, mirrors_of
 from design.claims import Statement
 from design.regions import Region
 from design.sampling import worst_poses
-from kinematics import Array, FviBounds, Mechanism, rounded_down, whole
+from kinematics import Array, FviBounds, Mechanism, Value, rounded_down, whole
 
 Progress = Callable[[str], None]
 MOST_BOXES = 4_000_000
@@ -38,8 +38,8 @@ SEED = 20_000  # poses of the grid that looks for a counterexample first
 _MOST_PER_COORDINATE = 200
 
 
-@dataclass(frozen=True)
-class Certificate:
+@dataclass(frozen=True, eq=False)
+class Certificate(Value):
     """A claim, the answer, and for a proof the boxes that anyone can check again.
 
     Attributes:

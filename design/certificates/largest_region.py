@@ -15,11 +15,11 @@ import numpy as np
 from design.budget import Budget
 from design.certificates.certificate import MOST_BOXES, Certificate, certify
 from design.regions import Cylinder
-from kinematics import Array, FviBounds, InvalidValue, Mechanism, positive
+from kinematics import Array, FviBounds, InvalidValue, Mechanism, Value, bisected, positive
 
 
-@dataclass(frozen=True)
-class CertifiedRegion:
+@dataclass(frozen=True, eq=False)
+class CertifiedRegion(Value):
     """What is proved of a family of regions.
 
     Attributes:
@@ -85,14 +85,20 @@ def certified_cylinder(
     tolerance = positive("tolerance", region.radius / 1000.0 if tolerance is None else tolerance)
     if tolerance < (finest := float(np.spacing(region.radius))):
         raise InvalidValue("tolerance", tolerance, f"at least {finest:.3g} m, the step between radii of this size")
-    started, best, boxes, budget = time.perf_counter(), [], 0, Budget(seconds)
+    started, boxes, complete, budget = time.perf_counter(), 0, True, Budget(seconds)
+    best: list[Certificate] = []
     others = {name: pair for name, pair in region.intervals.items() if name not in ("x", "y")}
     left = np.empty((0, 2, len(robot.pose_names)))
-    low, high, radius = 0.0, region.radius, region.radius
-    while True:
+
+    def proved(radius: Array | float) -> bool:
+        """Whether the cylinder of a radius is proved; where the time has run out, nothing is tried any more."""
+        nonlocal boxes, left, complete
+        if budget.spent:
+            complete = False
+            return False
         found = certify(
             robot,
-            Cylinder(radius, **others),
+            Cylinder(float(radius), **others),
             margin,
             at_least=at_least,
             bounds=bounds,
@@ -102,11 +108,11 @@ def certified_cylinder(
         )
         boxes += found.boxes
         if found.status == "proved":
-            low, best = radius, [found]
-        else:
-            high, left = radius, found.left if found.status == "undecided" else left
-        radius = 0.5 * (low + high)
-        complete = high - low <= tolerance or low == region.radius
-        if complete or budget.spent or radius in (low, high):
-            break
-    return CertifiedRegion(margin, at_least, tuple(best), boxes, left, complete, time.perf_counter() - started)
+            best.append(found)
+            return True
+        left = found.left if found.status == "undecided" else left
+        return False
+
+    if not proved(region.radius):
+        bisected(proved, 0.0, region.radius, tolerance)
+    return CertifiedRegion(margin, at_least, tuple(best[-1:]), boxes, left, complete, time.perf_counter() - started)

@@ -22,7 +22,7 @@ from kinematics import (
     Program,
     enclose,
     over_spans,
-    replay,
+    run_through,
 )
 
 _UP = 1.0 + 2.0**-48  # covers the roundings of products and of their sum over fewer than ten coordinates
@@ -105,7 +105,7 @@ def _conditions(symbols: list[ca.SX], expressions: ca.SX) -> ca.SX:
         return ca.if_else(condition, value, 0)
 
     program = Program.of(ca.Function("claims", symbols, [ca.densify(expressions)]))
-    replay(
+    run_through(
         program,
         [symbol[i] for symbol in symbols for i in range(symbol.numel())],
         {

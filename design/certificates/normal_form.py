@@ -13,7 +13,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from kinematics import LinkwrightError, Op, Program, replay
+from kinematics import LinkwrightError, Op, Program, run_through
 
 _MOST_TERMS = 2000  # of a form; beyond, expanding is no way to compare
 Monomial = tuple[Hashable, ...]  # atoms in order, repeated where squared
@@ -107,4 +107,4 @@ def forms(symbols: list[ca.SX], expressions: ca.SX, inputs: list[Form]) -> tuple
     missing = {Op(int(op)) for op in program.op} - {Op.CONST, Op.INPUT, Op.OUTPUT} - rules.keys()
     if missing or not np.isfinite(program.constant).all():
         raise NoForm(f"{missing or 'a constant that is not finite'}")
-    return [Form.of(value) for value in replay(program, inputs, rules)], partial
+    return [Form.of(value) for value in run_through(program, inputs, rules)], partial

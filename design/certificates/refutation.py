@@ -13,13 +13,13 @@ import numpy as np
 from design.certificates.scaled_rows import ScaledRows
 from design.claims import Statement
 from design.regions import Region
-from kinematics import Array, ClaimSymbols, enclose
+from kinematics import Array, ClaimSymbols, Value, enclose
 
 _MOST = 1024  # poses that are tried at once, the lowest first
 
 
-@dataclass(frozen=True)
-class Refutation:
+@dataclass(frozen=True, eq=False)
+class Refutation(Value):
     """A pose (n,) of the region where the margin is below the bound, or that a limb cannot reach."""
 
     pose: Array

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import casadi as ca
 import numpy as np
 
-from kinematics import Mechanism, Op, Program, replay, sides
+from kinematics import Mechanism, Op, Program, run_through, sides
 
 _LOADS = {Op.CONST, Op.INPUT, Op.OUTPUT}
 # Defined for all real operands, or at least a number wherever the operands are.
@@ -70,6 +70,6 @@ def _limbs_not_needed(expressions: ca.SX, inverse: ca.SX) -> list[int]:
     symbols = ca.symvar(both)
     program = Program.of(ca.Function("reaching", [ca.vertcat(*symbols)], [both]))
     inputs = [_Value(named(("input", k)), frozenset()) for k in range(len(symbols))]
-    rows = [valued(v) for v in replay(program, inputs, {op: operation(op) for op in Op if op not in _LOADS})]
+    rows = [valued(v) for v in run_through(program, inputs, {op: operation(op) for op in Op if op not in _LOADS})]
     shown = frozenset[int]().union(*(row.needs for row in rows[: expressions.numel()]))
     return [limb for limb, row in enumerate(rows[expressions.numel() :]) if not row.needs <= shown]

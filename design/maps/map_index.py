@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinematics import Array, FviBounds, Mechanism
+from kinematics import Array, FviBounds, Mechanism, Value
 
 
-@dataclass(frozen=True)
-class Index:
+@dataclass(frozen=True, eq=False)
+class Index(Value):
     """A number at each pose, the larger the better.
 
     Attributes:

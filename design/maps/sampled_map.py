@@ -19,7 +19,7 @@ from design.errors import OutOfTime
 from design.maps.map_index import Index
 from design.maps.section import Section
 from design.sampling import descend
-from kinematics import Array, whole
+from kinematics import Array, Value, whole
 
 REST = {0: 1, 1: 49, 2: 13, 3: 7, 4: 5}  # poses along each coordinate of the rest, by how many there are
 Window = tuple[tuple[float, float], tuple[float, float]]  # lower and upper bound of both axes
@@ -28,8 +28,8 @@ _ROUNDS = 22  # of descent: halvings end at a millionth of the grid's step
 _CHUNK = 1 << 18  # poses
 
 
-@dataclass(frozen=True)
-class Map:
+@dataclass(frozen=True, eq=False)
+class Map(Value):
     """An index over a plane.
 
     Attributes:

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinematics import Array
+from kinematics import Array, Value
 
 
-@dataclass(frozen=True)
-class Sweep:
+@dataclass(frozen=True, eq=False)
+class Sweep(Value):
     """What is left of a value over all poses; a pose whose value is NaN counts as lost and enters nothing else.
 
     Attributes:

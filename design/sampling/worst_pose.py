@@ -14,13 +14,13 @@ import numpy as np
 from design.budget import Budget
 from design.regions import Region, unit_grid
 from design.sampling.sweep import sweep
-from kinematics import Array, FviBounds, Mechanism, whole
+from kinematics import Array, FviBounds, Mechanism, Value, whole
 
 DENSE = 1_000_000  # poses of a grid that is far denser than any that is solved on
 
 
-@dataclass(frozen=True)
-class WorstPoses:
+@dataclass(frozen=True, eq=False)
+class WorstPoses(Value):
     """Local minima of a margin over a region, the lowest first.
 
     Attributes:

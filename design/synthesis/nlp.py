@@ -21,7 +21,7 @@ import numpy as np
 from design.claims import reach_rows
 from design.requirement import Bounds, Requirement, SumLimit
 from design.sampling import WorstPoses
-from kinematics import Array, FviBounds, Mechanism
+from kinematics import Array, FviBounds, Mechanism, Value
 
 _DECADES = 10.0  # a variable whose bounds are that far apart is counted in powers
 _TIE = 1e-7  # of the objective's size: of equal optima the one near the start, so that an exchange does not wander
@@ -124,8 +124,8 @@ class Problem:
         return self.robot.with_geometry(geometry)
 
 
-@dataclass(frozen=True)
-class NlpSolution:
+@dataclass(frozen=True, eq=False)
+class NlpSolution(Value):
     """What IPOPT returned for one set of poses.
 
     Attributes:

@@ -4,7 +4,7 @@ from kinematics.evaluation.block_interpreter import bulk, evaluate
 from kinematics.evaluation.block_program import BlockProgram
 from kinematics.evaluation.box_program import BoxProgram
 from kinematics.evaluation.interval_interpreter import enclose
-from kinematics.evaluation.program import Op, Program, replay
+from kinematics.evaluation.program import Op, Program, run_through
 from kinematics.evaluation.threads import CORES, over_spans
 
 __all__ = [
@@ -17,5 +17,5 @@ __all__ = [
     "enclose",
     "evaluate",
     "over_spans",
-    "replay",
+    "run_through",
 ]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinematics.arrays import Value
 from kinematics.evaluation.block_graph import Block, Graph, Node
 from kinematics.evaluation.program import Columns, Op, Program
 
@@ -14,8 +15,8 @@ _LEAVES = (int(Op.INPUT), int(Op.CONST))
 _SCALED = (Block.SUM, Block.PRODUCT, Block.PRODUCT_AFFINE, Block.PRODUCT_SUM, Block.TWO_PRODUCTS)
 
 
-@dataclass(frozen=True)
-class BlockProgram(Columns):
+@dataclass(frozen=True, eq=False)
+class BlockProgram(Value, Columns):
     """Instructions in order: work[target] = op(work[a], work[b], work[c], work[d]; k, c).
 
     The first rows hold the inputs' columns laid side by side. OUTPUT writes column `target` of the outputs laid side

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from kinematics.arrays import Value
 from kinematics.errors import InvalidValue
 from kinematics.evaluation.interval_interpreter import operate
 from kinematics.evaluation.program import Op, Program
@@ -20,8 +21,8 @@ _TOTAL = {Op.ADD, Op.SUB, Op.MUL, Op.SQ, Op.NEG, Op.TWICE, Op.SIN, Op.COS, Op.AS
 _ZERO, _ONE = (0.0, 0.0), (1.0, 1.0)
 
 
-@dataclass(frozen=True)
-class BoxProgram:
+@dataclass(frozen=True, eq=False)
+class BoxProgram(Value):
     """Instructions as in `Program`, with CONST an interval; no instruction writes where it reads."""
 
     op: np.ndarray  # (k,) int64

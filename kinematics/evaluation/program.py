@@ -1,6 +1,6 @@
 """A CasADi SX function as a flat list of instructions, for whoever wants to run it.
 
-`Program` is the one form that the block interpreter (arrays of poses) and `replay` (any other kind of number:
+`Program` is the one form that the block interpreter (arrays of poses) and `run_through` (any other kind of number:
 symbols, intervals, arbitrary precision) work from.
 """
 
@@ -16,6 +16,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from kinematics.arrays import Value
 from kinematics.errors import LinkwrightError
 
 
@@ -83,8 +84,8 @@ class Columns:
         return sum(rows * columns for rows, columns in self.outputs)
 
 
-@dataclass(frozen=True)
-class Program(Columns):
+@dataclass(frozen=True, eq=False)
+class Program(Value, Columns):
     """Instructions in order: work[target] = op(work[left], work[right]).
 
     INPUT reads column `left` of the inputs laid side by side; OUTPUT writes column `target` of the outputs laid side
@@ -161,7 +162,7 @@ _SYMBOLIC: dict[Op, Callable[..., Any]] = {
 }
 
 
-def replay(
+def run_through(
     program: Program, inputs: Sequence[Any], operations: Mapping[Op, Callable[[Any, Any], Any]] | None = None
 ) -> list[Any]:
     """Run the program over any kind of number; `operations` replaces the symbolic ones where given.

@@ -9,7 +9,7 @@ from typing import ClassVar, NamedTuple
 import casadi as ca
 import numpy as np
 
-from kinematics.errors import InvalidValue
+from kinematics.errors import InvalidField
 from kinematics.machine.drive_train import DriveTrain
 from kinematics.machine.geometry import frozen, numbers_of
 
@@ -39,15 +39,15 @@ class InertiaRecord:
             value = getattr(self, f.name)
             if f.name == "drive_train":
                 if not isinstance(value, DriveTrain):
-                    raise InvalidValue(f"{type(self).__name__} drive_train", value, "a DriveTrain")
+                    raise InvalidField(type(self).__name__, "drive_train", value, "a DriveTrain")
                 continue
             array, shape = numbers_of(value), np.shape(f.default)  # type: ignore[arg-type]
             if array is None or array.shape != shape or not np.isfinite(array).all() or np.any(array < 0.0):
                 count = f"{shape[0]} numbers, " if shape else ""
-                raise InvalidValue(f"{type(self).__name__} {f.name}", value, f"{count}finite and >= 0")
+                raise InvalidField(type(self).__name__, f.name, value, f"{count}finite and >= 0")
             object.__setattr__(self, f.name, frozen(array))
         if self.rod_middle > 1.0:
-            raise InvalidValue(f"{type(self).__name__} rod_middle", self.rod_middle, "a share, at most 1")
+            raise InvalidField(type(self).__name__, "rod_middle", self.rod_middle, "a share, at most 1")
 
     def check(self, count: int) -> None:
         """Check that every drive's data suits `count` actuators.

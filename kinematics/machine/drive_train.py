@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from kinematics.errors import InvalidValue
+from kinematics.errors import InvalidField
 from kinematics.machine.geometry import frozen, numbers_of
 
 PerActuator = float | tuple[float, ...]
@@ -41,10 +41,10 @@ class DriveTrain:
             value = getattr(self, f.name)
             numbers = numbers_of(value)
             if numbers is None or numbers.ndim > 1 or not np.isfinite(numbers).all() or np.any(numbers < 0.0):
-                raise InvalidValue(f"DriveTrain {f.name}", value, "finite and >= 0")
+                raise InvalidField("DriveTrain", f.name, value, "finite and >= 0")
             object.__setattr__(self, f.name, frozen(numbers))
         if np.any(np.asarray(self.gear_ratio) == 0.0):
-            raise InvalidValue("DriveTrain gear_ratio", self.gear_ratio, "> 0")
+            raise InvalidField("DriveTrain", "gear_ratio", self.gear_ratio, "> 0")
 
     def check(self, count: int) -> None:
         """Check that every field suits `count` actuators.
@@ -68,5 +68,5 @@ class DriveTrain:
         """
         value = getattr(self, name)
         if np.ndim(value) and np.shape(value) != (count,):
-            raise InvalidValue(f"DriveTrain {name}", value, f"one number or {count}, one an actuator")
+            raise InvalidField("DriveTrain", name, value, f"one number or {count}, one an actuator")
         return np.broadcast_to(np.asarray(value, dtype=float), (count,))

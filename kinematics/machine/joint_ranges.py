@@ -11,7 +11,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.errors import InvalidValue
+from kinematics.errors import InvalidField
 from kinematics.machine.geometry import numbers_of
 
 Pair = tuple[float, float]
@@ -40,7 +40,7 @@ class JointRanges:
         given = numbers_of(self.joints)
         if given is None or given.shape not in ((2,), (count, 2)) or not (given[..., 0] < given[..., 1]).all():
             wanted = f"lowest < highest, once or for each of {count} joints"
-            raise InvalidValue(f"{type(self).__name__} joints", self.joints, wanted)
+            raise InvalidField(type(self).__name__, "joints", self.joints, wanted)
         return np.broadcast_to(given, (count, 2))
 
     def check(self, count: int) -> None:
@@ -69,7 +69,7 @@ class RodRanges(JointRanges):
         given = numbers_of(self.passive)
         if given is None or given.shape != (2,) or not ((given > 0.0) & (given <= math.pi)).all():
             wanted = "two angles in (0, pi] rad: drives' ends, platform's ends"
-            raise InvalidValue(f"{type(self).__name__} passive", self.passive, wanted)
+            raise InvalidField(type(self).__name__, "passive", self.passive, wanted)
 
 
 class PassiveJoint(NamedTuple):

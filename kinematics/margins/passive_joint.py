@@ -7,7 +7,7 @@ from collections.abc import Callable
 import casadi as ca
 
 from kinematics.arrays import Array
-from kinematics.machine import Pair, PassiveJoint
+from kinematics.machine import Pair, PassiveJoint, RodRanges
 from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
 
 
@@ -34,6 +34,7 @@ class PassiveJoints(Margin):
 
 def _rows(robot: Mechanism, rows: Callable[[PassiveJoint, Pair], list[ca.SX]]) -> ca.SX:
     """Expressions of every passive joint and the limits, in the symbols `pose` and `geometry`."""
+    assert isinstance(robot.ranges, RodRanges)
     model, limits = robot.model(), robot.ranges.passive
     joints = robot.passive_joints(model.pose, model.joints, model.g)
     return model.at_pose(ca.vertcat(*(row for joint in joints for row in rows(joint, limits))))

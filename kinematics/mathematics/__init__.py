@@ -1,5 +1,6 @@
 """Mathematics that knows no robot: real roots, path tracking, symbolic linear algebra, distances, orientations."""
 
+from kinematics.mathematics.bisection import bisected
 from kinematics.mathematics.distinct_solutions import distinct, gaps, working_first
 from kinematics.mathematics.double_roots import not_below_zero
 from kinematics.mathematics.homotopy import refine, track
@@ -16,6 +17,7 @@ __all__ = [
     "Minors",
     "adjugate",
     "angles",
+    "bisected",
     "determinant",
     "displacement",
     "distinct",

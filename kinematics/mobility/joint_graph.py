@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from kinematics.arrays import Value
 from kinematics.errors import InvalidValue
 from kinematics.machine import TURN
 
@@ -51,7 +52,7 @@ class Mobility(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Joint:
+class Joint(Value):
     """A joint between two parts, at a place (3,) [m] of the pose in question.
 
     Attributes:

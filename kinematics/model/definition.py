@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import casadi as ca
 
 from kinematics.arrays import Array
-from kinematics.machine import Bodies, GeometryRecord, InertiaRecord, JointRanges, PassiveJoint
+from kinematics.machine import Bodies, GeometryRecord, InertiaRecord, JointRanges, PassiveJoint, Reference, Tree
 from kinematics.model.indices import FviBounds
 from kinematics.model.margin import Margin
 
@@ -35,6 +35,12 @@ class Definition(ABC):
     fvi_bounds: ClassVar[FviBounds]
     mirrors: ClassVar[tuple[tuple[str, ...], ...]] = ()  # coordinates whose signs change together: a mirror image
     margins: ClassVar[Mapping[str, Margin]]  # by name: `by_name(*STANDARD, ...)`, and what the mechanism adds
+
+    @classmethod
+    def lacking(cls) -> tuple[str, ...]:
+        """The hooks without a default that the class does not write."""
+        data = (name for name in Definition.__annotations__ if not hasattr(cls, name))
+        return tuple(sorted({*cls.__abstractmethods__, *data}))
 
     @staticmethod
     @abstractmethod
@@ -82,6 +88,20 @@ class Definition(ABC):
     @abstractmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
         """Named polylines (3, k) that draw the mechanism: base, arms, rods, platform."""
+
+    def link_tree(
+        self,
+        pose: ca.SX,  # noqa: ARG002
+        joints: ca.SX,  # noqa: ARG002
+        g: SimpleNamespace,  # noqa: ARG002
+        reference: Reference,  # noqa: ARG002
+    ) -> Tree | None:
+        """The links and their joints, for simulators; None where they follow from the bodies.
+
+        They do where each link is moved by one driven joint, or by the pose alone: x, y, z slide it, and theta, or yaw,
+        pitch and roll, turn it about the tool point.
+        """
+        return None
 
     def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:  # noqa: ARG002
         """The joints at the rods' ends; where there are any, `Ranges` limits them and `PASSIVE_JOINT` is a margin."""

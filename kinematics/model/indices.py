@@ -14,7 +14,7 @@ from functools import reduce
 import casadi as ca
 
 from kinematics.arguments import positive
-from kinematics.errors import InvalidValue
+from kinematics.errors import InvalidField
 from kinematics.mathematics import adjugate
 
 _LEAST, _MOST = 1e-50, 1e50  # of a bound of the FVI: squares of products of two must stay numbers
@@ -40,7 +40,7 @@ class FviBounds:
         for name, value in vars(self).items():
             number = positive(f"FviBounds {name}", value)
             if not _LEAST <= number <= _MOST:
-                raise InvalidValue(f"FviBounds {name}", number, f"a number from {_LEAST:g} to {_MOST:g}")
+                raise InvalidField("FviBounds", name, number, f"a number from {_LEAST:g} to {_MOST:g}")
             object.__setattr__(self, name, number)
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import casadi as ca
 import numpy as np
 
-from kinematics.arrays import Array
+from kinematics.arrays import Array, Value
 from kinematics.mathematics import near_inverse
 from kinematics.model.indices import FviBounds, sides, smallest
 
@@ -62,8 +62,8 @@ class ClaimSymbols:
         return [at_least, fvi.joint_speed, fvi.joint_effort, fvi.speed, fvi.force, length]
 
 
-@dataclass(frozen=True)
-class ToShow:
+@dataclass(frozen=True, eq=False)
+class ToShow(Value):
     """Expressions (c,) of which is shown whether they are at least 0; `scaling` holds symbols of any numbers.
 
     `matrix` is what these come from, in the middle of each box, by `chosen`: (k, r, c) plain values -> (k, rows,

@@ -14,7 +14,7 @@ import numpy as np
 from kinematics.arrays import Array, checked, together
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.evaluation import BlockProgram, evaluate
-from kinematics.machine import GeometryRecord, InertiaRecord
+from kinematics.machine import GeometryRecord, InertiaRecord, JointRanges
 from kinematics.model import expressions
 from kinematics.model.continuation import forward_near
 from kinematics.model.definition import Definition
@@ -33,7 +33,7 @@ class Mechanism(Definition):
     Every public method takes poses (..., n) or joints (..., m) with any leading shape.
     """
 
-    ranges: Any
+    ranges: JointRanges
     home: Array
     mode: Mode
 
@@ -41,7 +41,7 @@ class Mechanism(Definition):
         self,
         geometry: GeometryRecord | None = None,
         inertia: InertiaRecord | None = None,
-        ranges: Any = None,
+        ranges: JointRanges | None = None,
         home: Sequence[float] | Array | None = None,
         home_joints: Sequence[float] | Array | None = None,
     ) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from kinematics.evaluation import Op, Program, replay
+from kinematics.evaluation import Op, Program, run_through
 
 if TYPE_CHECKING:
     from kinematics.model.mechanism import Mechanism
@@ -87,7 +87,7 @@ class Model:
         symbols = [*own, *(s for s in ca.symvar(expression) if s.element_hash() not in names)]
         inner = Program.of(ca.Function("expression", symbols, [ca.densify(expression)]))
         operations = {Op.COS: lambda a, _: lookup(0, a), Op.SIN: lambda a, _: lookup(1, a)}
-        numbers = replay(inner, [s[i] for s in symbols for i in range(s.shape[0])], operations)
+        numbers = run_through(inner, [s[i] for s in symbols for i in range(s.shape[0])], operations)
         rows, columns = expression.shape
         result = ca.sparsify(ca.reshape(ca.vertcat(*numbers), columns, rows).T)
         return ca.substitute(result, self.joints, self.inverse)

@@ -15,8 +15,8 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.dynamics import GRAVITY
+from kinematics.machine import Link
 from kinematics.model import Mechanism
-from kinematics.multibody.links import Link
 from kinematics.multibody.open_tree import OpenTree, open_tree
 
 _STEP = 1e-4  # [s]
@@ -28,12 +28,12 @@ def mjcf(robot: Mechanism, pose: Array, payload: float = 0.0) -> str:
     """The mechanism as an MJCF document, SI units. Each motor's control is its torque; `gear` is the gear ratio.
 
     Args:
-        robot: Heli4, Redundant3T1R, Peppermill or GoughStewart.
+        robot: one whose links follow from its bodies, or that has the hook `link_tree`.
         pose: (n,) where the document starts.
         payload: mass at the tool [kg].
 
     Raises:
-        InvalidValue: another mechanism, or a payload that is no mass.
+        InvalidValue: its links do not follow from its bodies, or a payload that is no mass.
         UnreachablePose: a limb cannot reach the pose.
     """
     cut = open_tree(robot, pose, payload)

@@ -11,10 +11,9 @@ from kinematics.arrays import Array, checked
 from kinematics.dynamics import derivatives_along, moving_bodies, require_payload
 from kinematics.errors import InvalidValue
 from kinematics.evaluation import evaluate
-from kinematics.machine import Bodies, Particle
+from kinematics.machine import Bodies, Connection, Link, Particle, Reference, Tree, TreeJoint, universal
 from kinematics.model import Build, Mechanism, Model
-from kinematics.multibody.link_trees import link_tree
-from kinematics.multibody.links import Connection, Link, Reference, Tree, TreeJoint, universal
+from kinematics.multibody.links_of_bodies import links_of_bodies
 
 
 class OpenTree(NamedTuple):
@@ -46,12 +45,12 @@ def open_tree(robot: Mechanism, pose: Array, payload: float) -> OpenTree:
     """The mechanism cut open; rods are bodies where some of their mass is at the middle.
 
     Args:
-        robot: Heli4, Redundant3T1R, Peppermill or GoughStewart.
+        robot: one whose links follow from its bodies, or that has the hook `link_tree`.
         pose: (n,) the reference.
         payload: mass at the tool [kg].
 
     Raises:
-        InvalidValue: another mechanism, more than one pose, or a payload that is no mass.
+        InvalidValue: its links do not follow from its bodies, more than one pose, or a payload that is no mass.
         UnreachablePose: a limb cannot reach the pose.
     """
     pose, model = checked(pose, "pose", robot.pose_names), robot.model()
@@ -64,7 +63,8 @@ def open_tree(robot: Mechanism, pose: Array, payload: float) -> OpenTree:
     def reference(expression: ca.SX) -> ca.DM:
         return ca.Function("at", [model.pose, model.joints, model.geometry], [expression])(*numbers)
 
-    tree, bodies = link_tree(robot, reference), moving_bodies(robot, model, payload)
+    bodies = moving_bodies(robot, model, payload)
+    tree = robot.link_tree(model.pose, model.joints, model.g, reference) or links_of_bodies(robot, model, bodies)
     if not robot.inertia.rod_middle:
         return OpenTree(tree._replace(couplings=tree.couplings + tree.planes), bodies, reference, False)
     links, connections = _rod_links(bodies, tree, reference)
@@ -73,10 +73,10 @@ def open_tree(robot: Mechanism, pose: Array, payload: float) -> OpenTree:
 
 
 def _rod_links(bodies: Bodies, tree: Tree, reference: Reference) -> tuple[tuple[Link, ...], tuple[Connection, ...]]:
-    """Each rod as a link of its own, hung on its first link, which does not turn, and connected to the second."""
+    """Each rod as a link of its own: hung on its first link, which sees its angles, and connected to the second."""
     links, connections = [], []
     for k, rod in enumerate(bodies.rods):
-        name, span = f"rod {k + 1}", rod.end - rod.start
+        name, span = f"rod {k + 1}", _turn(tree, rod.links[0], reference).T @ (rod.end - rod.start)
         if tree.hinges:
             axis, before = tree.hinges[k], reference(span)
             angle = ca.atan2(ca.dot(ca.cross(before, span), axis), ca.dot(before, span))
@@ -86,6 +86,19 @@ def _rod_links(bodies: Bodies, tree: Tree, reference: Reference) -> tuple[tuple[
         links.append(Link(name, rod.links[0], joints))
         connections.append(Connection((name, rod.links[1]), rod.end))
     return tuple(links), tuple(connections)
+
+
+def _turn(tree: Tree, link: str | None, reference: Reference) -> ca.SX:
+    """(3, 3) by what rotation a link is turned from the reference."""
+    if link is None:
+        return ca.SX.eye(3)
+    joints, parent = next((some.joints, some.parent) for some in tree.links if some.name == link)
+    turn = _turn(tree, parent, reference)
+    for joint in joints:
+        if joint.kind == "hinge":
+            axis, angle = ca.skew(reference(joint.axis)), joint.coordinate - reference(joint.coordinate)
+            turn = turn @ (ca.SX.eye(3) + ca.sin(angle) * axis + (1 - ca.cos(angle)) * (axis @ axis))
+    return turn
 
 
 def tree_motion(

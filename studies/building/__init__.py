@@ -2,7 +2,7 @@
 
 from studies.building.inside_region import leaving
 from studies.building.load import load_study
-from studies.building.mechanisms import mechanism_class
+from studies.building.mechanisms import installed_mechanisms
 from studies.building.objects import (
     approach_limits,
     drive_file_names,
@@ -22,10 +22,10 @@ __all__ = [
     "drive_file_names",
     "drive_of",
     "home_of",
+    "installed_mechanisms",
     "leaving",
     "limits_of",
     "load_study",
-    "mechanism_class",
     "path_of",
     "problem_of",
     "region_of",

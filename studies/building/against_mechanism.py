@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from studies.building.geometry_fields import GeometryField, geometry_fields, shape
 from studies.building.hardware import hardware_faults, hardware_tables, joint_unit, subtable
-from studies.building.mechanisms import GeometryField, geometry_fields, shape
 from studies.errors import KeyPath
 from studies.study_file import (
     REGION_KINDS,
@@ -79,7 +79,7 @@ def _trajectory_table(pose_names: Sequence[str], joints: int) -> Table:
     return Table({name: key for name, key in trajectory.keys.items() if name != "cycle"})
 
 
-def faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:
+def at_odds(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:
     """The paths of `data` (in SI) at odds with `mechanism`; what the models reject is left to them."""
     fields = geometry_fields(mechanism)
     for name, value in subtable(data, "geometry").items():

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematics import DriveTrain, InvalidValue
-from studies.building.mechanisms import mechanism_class
 from studies.errors import KeyPath
 from studies.study_file import Dimension, InertiaTable, Key, Table, table_of
 
@@ -30,13 +29,13 @@ def inertia_of(study: Study) -> InertiaRecord:
     """The mechanism's masses with the study's own in their places."""
     masses: dict[str, Any] = dict(study.inertia.masses)
     drive_train = DriveTrain(**study.inertia.drive_train.model_dump(exclude_none=True))
-    return mechanism_class(study.mechanism).Inertia(**masses, drive_train=drive_train)
+    return study.mechanism_class.Inertia(**masses, drive_train=drive_train)
 
 
 def ranges_of(study: Study) -> JointRanges:
     """The mechanism's joint ranges with the study's own in their places."""
     ranges: dict[str, Any] = dict(study.ranges)
-    return mechanism_class(study.mechanism).Ranges(**ranges)
+    return study.mechanism_class.Ranges(**ranges)
 
 
 def hardware_tables(mechanism: type[Mechanism]) -> dict[str, Table]:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from design import Region
-from kinematics import Array
+from kinematics import Array, Value
 from trajectory import Way
 
 TOLERANCE = 1e-6  # rad, or of the region's size, by which a way may leave it: it may run along the boundary
@@ -21,8 +21,8 @@ _START = 64  # intervals, at least, that the way is cut into first
 _SMALLEST = 1e-9  # of the length: narrower intervals are not halved
 
 
-@dataclass(frozen=True)
-class Leaving:
+@dataclass(frozen=True, eq=False)
+class Leaving(Value):
     """Where a way is outside the region, or could not be proved not to be.
 
     Attributes:

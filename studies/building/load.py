@@ -3,61 +3,62 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import ValidationError
 
 from kinematics import InvalidGeometry
-from studies.building.against_mechanism import faults, study_table
-from studies.building.mechanisms import mechanism_class, mechanism_names
+from studies.building.against_mechanism import at_odds, study_table
+from studies.building.mechanisms import MechanismRefused, NamedMechanism, mechanism_named
 from studies.building.objects import path_of
-from studies.errors import KeyPath, Problem, StudyError, spelled
-from studies.study_file import Conversion, Key, Study, Table, TomlFile, WaypointTable, read_toml, table_of
+from studies.errors import Fault, KeyPath, StudyError, spelled
+from studies.study_file import Conversion, Finding, Key, Study, Table, TomlFile, WaypointTable, table_of
 from trajectory import InvalidPath, read_waypoints
-
-if TYPE_CHECKING:
-    from kinematics import Mechanism
 
 # Without a known mechanism nothing can be said about these.
 _OF_THE_MECHANISM = ("geometry", "inertia", "ranges", "region", "home", "optimise", "certify", "requirement")
 
 
-def load_study(path: Path) -> Study:
-    """Read the study file at `path`; all values of the result are in SI and radians.
+def load_study(file: TomlFile, allow_code: bool = False) -> Study:
+    """Check a study file; all values of the result are in SI and radians.
 
-    Raises StudyError, which holds every fault with its key and line.
+    Args:
+        file: as `read_toml` reads it.
+        allow_code: whether the module that the study may name for its mechanism may run.
+
+    Raises:
+        StudyError: it holds every fault with its key and line.
+        WaypointFileError: a file of waypoints that the study names cannot be used.
     """
-    file = read_toml(path)
-    mechanism = _mechanism(file.data.get("mechanism"))
-    conversion = Conversion()
-    raw = file.data
-    if mechanism:
+    conversion, raw = Conversion(), file.data
+    named = _mechanism(file, conversion, allow_code)
+    if named is not None:
+        mechanism = named.mechanism_class
         table = study_table(mechanism, raw)
         data = conversion.to_si(raw, table)
-        wrong = set(faults(data, mechanism))
+        wrong = set(at_odds(data, mechanism))
     else:
-        table = table_of(Study).updated({"mechanism": Key("one of", choices=mechanism_names())})
+        table = table_of(Study)
         data = conversion.to_si(_without_the_mechanism_s(raw), table)
         wrong = {("mechanism",)}
         conversion.reported.update((name,) for name in _OF_THE_MECHANISM)
     try:
-        study = Study.model_validate(data | {"name": path.resolve().parent.name})
+        of_code = {} if named is None else named._asdict()
+        study = Study.model_validate(data | of_code | {"name": file.path.resolve().parent.name})
     except ValidationError as error:
         wrong.update(_invalid(error, table))
-    problems = _problems(file, table, conversion, wrong)
-    if problems:
-        raise StudyError(problems)
-    assert mechanism is not None
+    if told := _faults(file, table, conversion, wrong):
+        raise StudyError(told)
+    assert named is not None
     try:
-        mechanism.Geometry(**study.geometry)
+        named.mechanism_class.Geometry(**study.geometry)
     except InvalidGeometry as error:
         key = conversion.spelling.get(("geometry", error.field), ("geometry",))
-        raise StudyError([file.problem(key, spelled(file.value(key)), error.expected)]) from error
-    return _with_waypoints(study, file, mechanism.pose_names)
+        raise StudyError([file.fault(key, spelled(file.value(key)), error.expected)]) from error
+    return _with_waypoints(study, file, conversion, named.mechanism_class.pose_names)
 
 
-def _with_waypoints(study: Study, file: TomlFile, pose_names: tuple[str, ...]) -> Study:
+def _with_waypoints(study: Study, file: TomlFile, conversion: Conversion, pose_names: tuple[str, ...]) -> Study:
     """The study with the waypoints of the file that it names, so that they belong to its digest.
 
     Raises StudyError where a waypoint of the study itself does not fit, WaypointFileError where one of the file.
@@ -67,13 +68,13 @@ def _with_waypoints(study: Study, file: TomlFile, pose_names: tuple[str, ...]) -
     path, key = study.trajectory.path, ("trajectory", "path")
     if (path.file is None) == (not path.waypoint):
         found = "neither a file nor waypoints" if path.file is None else "a file and waypoints"
-        raise StudyError([file.problem(key, found, "one of the two")])
+        raise StudyError([file.fault(key, found, "one of the two")])
     if path.file is not None:
         beside = file.path.parent / path.file
         if beside.suffix.lower() != ".csv" or not beside.is_file():
             what = "no such file" if not beside.exists() else "no CSV file"
             found = f"{spelled(path.file)}, {what}"
-            raise StudyError([file.problem((*key, "file"), found, "a .csv file of waypoints beside the study")])
+            raise StudyError([file.fault((*key, "file"), found, "a .csv file of waypoints beside the study")])
         read = read_waypoints(beside, pose_names)
         rows = zip(read.poses, (0.0, *read.blends, 0.0), strict=True)
         waypoints = tuple(
@@ -85,14 +86,13 @@ def _with_waypoints(study: Study, file: TomlFile, pose_names: tuple[str, ...]) -
         path = path.model_copy(update={"waypoint": waypoints})
         return study.model_copy(update={"trajectory": study.trajectory.model_copy(update={"path": path})})
     if len(path.waypoint) == 1:
-        raise StudyError([file.problem((*key, "waypoint"), "one waypoint", "two or more")])
+        raise StudyError([file.fault((*key, "waypoint"), "one waypoint", "two or more")])
     try:
         path_of(study.trajectory, pose_names)
     except InvalidPath as error:
-        row = file.data["trajectory"]["path"]["waypoint"][error.pose - 1]
-        own = (f"{name} = {spelled(value)}" for name, value in row.items() if name.split("_")[0] == error.field)
-        found = next(own, f"{error.field} {error.found}")
-        raise StudyError([file.problem((*key, "waypoint", error.pose - 1), found, error.expected)]) from error
+        own = conversion.spelling.get((*key, "waypoint", error.pose - 1, error.field))
+        found = f"{own[-1]} = {spelled(file.value(own))}" if own else f"{error.field} {error.found}"
+        raise StudyError([file.fault((*key, "waypoint", error.pose - 1), found, error.expected)]) from error
     return study
 
 
@@ -106,13 +106,23 @@ def _without_the_mechanism_s(raw: dict[str, Any]) -> dict[str, Any]:
     return data
 
 
-def _mechanism(name: object) -> type[Mechanism] | None:
-    return mechanism_class(name) if isinstance(name, str) and name in mechanism_names() else None
+def _mechanism(file: TomlFile, conversion: Conversion, allow_code: bool) -> NamedMechanism | None:
+    """What the study names; None where none can be had, and a finding where the key's own words say too little."""
+    name = file.data.get("mechanism")
+    if not isinstance(name, str):
+        return None
+    try:
+        return mechanism_named(name, file.path.resolve().parent, allow_code)
+    except MechanismRefused as error:
+        conversion.findings.append(Finding(("mechanism",), error.found, error.expected))
+        return None
 
 
 def _invalid(error: ValidationError, table: Table) -> Iterator[KeyPath]:
     """The SI paths that the models reject."""
     for detail in error.errors(include_url=False, include_context=False, include_input=False):
+        if detail["loc"] == ("mechanism_class",):
+            continue  # what is wrong with the mechanism is told at its name
         path: list[str | int] = []
         node = table
         for part in detail["loc"]:
@@ -129,8 +139,8 @@ def _invalid(error: ValidationError, table: Table) -> Iterator[KeyPath]:
         yield (*path, "kind") if detail["type"].startswith("union_tag") else tuple(path)
 
 
-def _problems(file: TomlFile, table: Table, conversion: Conversion, wrong: set[KeyPath]) -> list[Problem]:
-    problems = [file.problem(f.path, f.found, f.expected) for f in conversion.findings]
+def _faults(file: TomlFile, table: Table, conversion: Conversion, wrong: set[KeyPath]) -> list[Fault]:
+    faults = [file.fault(f.path, f.found, f.expected) for f in conversion.findings]
     told = {finding.path for finding in conversion.findings}
     for path in sorted(wrong, key=str):
         if path in conversion.reported and path not in conversion.spelling:
@@ -146,8 +156,8 @@ def _problems(file: TomlFile, table: Table, conversion: Conversion, wrong: set[K
         node = _node(table, path)
         suffix = str(spelling[-1])[len(str(path[-1])) + 1 :]
         expected = node.describe(suffix, value) if isinstance(node, Key) else node.describe(value)
-        problems.append(file.problem(spelling, found, expected))
-    return problems
+        faults.append(file.fault(spelling, found, expected))
+    return faults
 
 
 def _node(table: Table, path: KeyPath) -> Key | Table:

@@ -1,81 +1,151 @@
-"""What a study needs to know of a mechanism; `kinematics` is loaded only when it is asked for."""
+"""The mechanism that a study names: Linkwright's own, an installed package's, or a class in a module of the user's.
+
+The last must be allowed: a study from elsewhere must not run code by being read.
+"""
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Mapping
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+import hashlib
+import inspect
+import re
+import sys
+import traceback
+from collections.abc import Callable, Mapping
+from importlib import import_module, util
+from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
+from types import ModuleType
+from typing import Any, NamedTuple, TypeGuard
 
-from kinematics import LinkwrightError
+import kinematics
+from kinematics import LinkwrightError, Mechanism
+from studies.errors import spelled
+from studies.study_file import Key
 
-if TYPE_CHECKING:
-    from kinematics import Mechanism
-
-
-class UnknownMechanism(LinkwrightError):
-    """No mechanism is called `name`; `known` are the names."""
-
-    def __init__(self, name: str, known: tuple[str, ...]) -> None:
-        super().__init__(name, known)
-        self.name, self.known = name, known
-
-    def __str__(self) -> str:
-        return f"unknown mechanism {self.name!r}; known: {', '.join(self.known)}"
+GROUP = "linkwright.mechanisms"  # of entry points
+_IN_MODULE = re.compile(r"([^\W\d]\w*(?:\.[^\W\d]\w*)*):([^\W\d]\w*)")
 
 
-@dataclasses.dataclass(frozen=True)
-class GeometryField:
-    """A field of a mechanism's geometry: `shape` () for a number, (4,) for four.
+class MechanismRefused(LinkwrightError):
+    """No mechanism can be had by the name that a study gives: what was found, and what would be right."""
 
-    Every number is above `minimum` [SI]; None allows any sign. No pitch is zero.
-    """
+    def __init__(self, name: str, found: str, expected: str) -> None:
+        self.name, self.found, self.expected = name, found, expected
+        super().__init__(f"mechanism {name!r}: found {found}; expected {expected}")
 
-    dimension: str
-    shape: tuple[int, ...]
-    minimum: float | None
 
-    def allows(self, low: float, high: float) -> bool:
-        """Whether the field may hold every number from `low` to `high` [SI]."""
-        without_zero = self.dimension != "length_per_turn" or not low <= 0 <= high
-        return without_zero and (self.minimum is None or low > self.minimum)
+class NamedMechanism(NamedTuple):
+    """A mechanism's class, and the SHA-256 of the file that defines it; "" for one of Linkwright's own."""
+
+    mechanism_class: type[Mechanism]
+    code: str
 
 
 def mechanism_names() -> tuple[str, ...]:
-    """The names that a study's `mechanism` may have."""
-    return tuple(_mechanisms())
+    """The names that need no module: Linkwright's own mechanisms, and those of installed packages."""
+    return (*_own(), *installed_mechanisms())
 
 
-def mechanism_class(name: str) -> type[Mechanism]:
-    """The class called `name`. Raises UnknownMechanism."""
+def installed_mechanisms() -> dict[str, EntryPoint]:
+    """By name; none is loaded."""
+    return {point.name: point for point in entry_points(group=GROUP) if point.name not in _own()}
+
+
+def mechanism_named(name: str, folder: Path, allow_code: bool) -> NamedMechanism:
+    """The mechanism that a study in a folder names.
+
+    Args:
+        name: one of `mechanism_names`, or "module:Class"; a file `module.py` in the folder comes before a module on
+            Python's path.
+        folder: the study's.
+        allow_code: whether such a module may run.
+
+    Raises:
+        MechanismRefused: there is none of this name, it may not run, or it is no mechanism that can be used.
+    """
+    if name in (own := _own()):
+        return NamedMechanism(own[name], "")
+    if name in (installed := installed_mechanisms()):
+        point = installed[name]
+        return _usable(name, _ran(name, point.value, point.load))
+    match = _IN_MODULE.fullmatch(name)
+    if match is None:
+        expected = Key('"module:Class", or one of', choices=mechanism_names()).describe(found=name)
+        raise MechanismRefused(name, spelled(name), expected)
+    module_name, attribute = match.groups()
+    beside = folder / f"{module_name}.py"
+    where = f"{beside.name} beside the study" if beside.is_file() else f"the module {module_name}"
+    if not allow_code:
+        expected = f"--allow-code with the command, if you trust {where}; or one of {', '.join(mechanism_names())}"
+        raise MechanismRefused(name, f"{spelled(name)}, code of {where}, which does not run by itself", expected)
+    if beside.is_file():
+        module = _ran(name, where, lambda: _module_of(beside))
+    else:
+        module = _ran(name, where, lambda: import_module(module_name))
+    if not hasattr(module, attribute):
+        its = [key for key, value in vars(module).items() if _is_mechanism(value) and value is not Mechanism]
+        expected = Key("one of", choices=tuple(its)).describe(found=attribute) if its else "a mechanism there"
+        raise MechanismRefused(name, f"no {attribute} in {where}", expected)
+    return _usable(name, getattr(module, attribute))
+
+
+def _own() -> Mapping[str, type[Mechanism]]:
+    return kinematics.MECHANISMS
+
+
+def _module_of(file: Path) -> ModuleType:
+    """The module in a file; the same file with the same content is run once."""
+    digest = hashlib.sha256(str(file.resolve()).encode() + file.read_bytes()).hexdigest()
+    unique = f"{file.stem}_{digest[:16]}"  # another study may have another file of the same name beside it
+    if unique in sys.modules:
+        return sys.modules[unique]
+    spec = util.spec_from_file_location(unique, file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = sys.modules[unique] = util.module_from_spec(spec)
     try:
-        return _mechanisms()[name]
-    except KeyError:
-        raise UnknownMechanism(name, mechanism_names()) from None
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[unique]
+        raise
+    return module
 
 
-def geometry_fields(mechanism: type[Mechanism]) -> dict[str, GeometryField]:
-    """The geometry's fields by name; the prototype's values give the shapes."""
-    prototype = mechanism.Geometry()
-    return {
-        field.name: GeometryField(
-            dimension=field.metadata["dimension"],
-            shape=shape(getattr(prototype, field.name)),
-            minimum=field.metadata.get("minimum"),
-        )
-        for field in dataclasses.fields(mechanism.Geometry)
-    }
+def _ran(name: str, where: str, run: Callable[[], Any]) -> Any:
+    """What someone else's code gives.
+
+    Raises:
+        MechanismRefused: it raises, with the line on which it does.
+    """
+    try:
+        return run()
+    except ModuleNotFoundError as error:
+        if error.name and f"{name.partition(':')[0]}.".startswith(f"{error.name}."):
+            expected = f"{error.name}.py beside the study, or a module on Python's path"
+            raise MechanismRefused(name, f"no module {error.name}", expected) from error
+        raise _raising(name, where, error) from error
+    except (Exception, SystemExit) as error:
+        raise _raising(name, where, error) from error
 
 
-def shape(value: object) -> tuple[int, ...]:
-    """The shape of nested tuples of numbers, () for a number; -1 where entries differ."""
-    if not isinstance(value, tuple):
-        return ()
-    inner = {shape(entry) for entry in value}
-    return (len(value), *inner.pop()) if len(inner) == 1 else (len(value), -1)
+def _raising(name: str, where: str, error: BaseException) -> MechanismRefused:
+    last = traceback.extract_tb(error.__traceback__)[-1]
+    place = f"{error.filename}:{error.lineno}" if isinstance(error, SyntaxError) else f"{last.filename}:{last.lineno}"
+    found = f"{where} that raises {type(error).__name__}: {error} ({place})"
+    return MechanismRefused(name, found, "code of a mechanism that runs")
 
 
-def _mechanisms() -> Mapping[str, type[Mechanism]]:
-    kinematics: Any = import_module("kinematics")
-    mechanisms: Mapping[str, type[Mechanism]] = kinematics.MECHANISMS
-    return mechanisms
+def _usable(name: str, kind: object) -> NamedMechanism:
+    """Checked as far as its prototype and its symbolic model show."""
+    if not _is_mechanism(kind):
+        raise MechanismRefused(name, f"{kind!r:.60}", "a class derived from kinematics.Mechanism")
+    if lacking := kind.lacking():
+        raise MechanismRefused(name, f"a mechanism without {', '.join(lacking)}", "all hooks of docs/new_mechanism.md")
+    _ran(name, f"a prototype of {kind.__name__}", lambda: kind().model())
+    source = inspect.getsourcefile(kind)
+    code = "" if source is None else hashlib.sha256(Path(source).read_bytes()).hexdigest()
+    return NamedMechanism(kind, code)
+
+
+def _is_mechanism(value: object) -> TypeGuard[type[Mechanism]]:
+    return isinstance(value, type) and issubclass(value, Mechanism)

@@ -4,17 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import partial
-from pathlib import Path as FilePath
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from design import Bounds, Box, Cylinder, Problem, Region, Requirement, SumLimit
-from kinematics import Array, FviBounds, GeometryRecord, InvalidValue, Mechanism, UnreachablePose, to_actuators
+from kinematics import (
+    Array,
+    FviBounds,
+    GeometryRecord,
+    InvalidField,
+    InvalidValue,
+    Mechanism,
+    UnreachablePose,
+    to_actuators,
+)
 from studies.building.hardware import inertia_of, ranges_of
 from studies.building.inside_region import leaving
-from studies.building.mechanisms import mechanism_class
 from studies.errors import HomeOutOfReach, StudyError
 from studies.study_file import (
     ApproachTable,
@@ -22,13 +29,13 @@ from studies.study_file import (
     DriveTable,
     LimitsTable,
     Study,
+    TomlFile,
     TrajectoryTable,
     adept_cycle,
-    read_toml,
     refused_field,
     travelled,
 )
-from trajectory import Limits, Path, PoseBounds, RoundedPath, Setpoints, Timing
+from trajectory import Limits, Path, PoseBounds, RoundedPath, Setpoints, TimingLaw, law_named
 from trajectory.drive_files import Drive, drive_files
 
 OBJECTIVE = "fvi"
@@ -36,7 +43,7 @@ OBJECTIVE = "fvi"
 
 def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
     """The study's mechanism, masses and joint ranges; `geometry` in place of the prototype with the study's changes."""
-    kind = mechanism_class(study.mechanism)
+    kind = study.mechanism_class
     joints = None if study.home is None else study.home.joints
     return kind(
         geometry or kind.Geometry(**study.geometry),
@@ -78,7 +85,7 @@ def region_of(study: Study) -> Region:
 def fvi_bounds_of(study: Study) -> FviBounds:
     """What the FVI is measured against: the study's, or the mechanism's own."""
     if study.fvi is None:
-        return mechanism_class(study.mechanism).fvi_bounds
+        return study.mechanism_class.fvi_bounds
     f = study.fvi
     return FviBounds(f.joint_speed, f.joint_effort, f.speed, f.force)
 
@@ -119,7 +126,7 @@ def path_of(asked: TrajectoryTable, pose_names: tuple[str, ...]) -> Path:
     return RoundedPath(pose_names, poses, tuple(w.blend for w in waypoints[1:-1]))
 
 
-def require_cycle_inside(study: Study, file: FilePath) -> None:
+def require_cycle_inside(study: Study, file: TomlFile) -> None:
     """Prove that the cycle's path stays where the geometry is verified.
 
     Raises:
@@ -127,14 +134,13 @@ def require_cycle_inside(study: Study, file: FilePath) -> None:
     """
     if study.trajectory is None:
         return
-    names = mechanism_class(study.mechanism).pose_names
+    names = study.mechanism_class.pose_names
     path = path_of(study.trajectory, names)
     if (found := leaving(region_of(study), path, names)) is not None:
         pose = ", ".join(f"{v:.4g}" for v in found.pose)
-        read = read_toml(file)
-        key = travelled(read)
+        key = travelled(file)
         expected = f"a {key[-1]} inside the region, {region_of(study)}"
-        raise StudyError([read.problem(key, f"the pose ({pose}) on it", expected)])
+        raise StudyError([file.fault(key, f"the pose ({pose}) on it", expected)])
 
 
 def drive_of(drive: DriveTable) -> Drive:
@@ -142,7 +148,7 @@ def drive_of(drive: DriveTable) -> Drive:
     return Drive(drive.axes, drive.increments, drive.encoder_gear)
 
 
-def drive_file_names(study: Study, file: FilePath, asked_for: Sequence[str] | None) -> list[str]:
+def drive_file_names(study: Study, file: TomlFile, asked_for: Sequence[str] | None) -> list[str]:
     """The drive files' names, from writing those of the cycle's path to nowhere before hours of work go into them.
 
     Args:
@@ -162,9 +168,9 @@ def drive_file_names(study: Study, file: FilePath, asked_for: Sequence[str] | No
     except InvalidValue as error:
         by = f"for --format {' --format '.join(asked_for)}" if asked_for else ""
         key = ("trajectory",) if asked_for else ("trajectory", "files")
-        read = read_toml(file)
         found = f"{error.what} {error.found} {by}".strip()
-        raise StudyError([refused_field(read, error, by) or read.problem(key, found, error.expected)]) from error
+        at_its_key = refused_field(file, error, by) if isinstance(error, InvalidField) else None
+        raise StudyError([at_its_key or file.fault(key, found, error.expected)]) from error
 
 
 def _along(robot: Mechanism, path: Path, period: float) -> Setpoints:
@@ -181,39 +187,26 @@ def limits_of(limits: LimitsTable) -> Limits:
     return Limits(**limits.model_dump())
 
 
-def timing_of(study: Study) -> tuple[Timing, tuple[str, ...]]:
-    """The study's timing law, and the limits that it is run without although the study may set them.
-
-    Only jerk: it makes a motion smooth, while what else a law cannot keep rates the drives, and is refused.
-    """
+def timing_of(study: Study) -> tuple[TimingLaw, tuple[str, ...]]:
+    """The study's timing law, and the limits that it is run without although the study may set them."""
     asked = study.trajectory
     assert asked is not None
-    if asked.law == "toppra":
-        from trajectory import time_optimal
-
-        return partial(time_optimal, intervals=asked.grid), ("jerk",)
-    if asked.law == "free":
-        from trajectory import free_motion
-
-        return partial(free_motion, within=pose_bounds_of(study)), ()
-    from trajectory import jerk_limited
-
-    return jerk_limited, ()
+    law = law_named(asked.law)
+    return law.timing(asked.grid, pose_bounds_of(study)), law.leaves_out
 
 
 def pose_bounds_of(study: Study) -> PoseBounds:
     """The study's region, as the free law takes it."""
     region = region_of(study)
-    low, high = zip(*(region.intervals[name] for name in mechanism_class(study.mechanism).pose_names), strict=True)
+    low, high = zip(*(region.intervals[name] for name in study.mechanism_class.pose_names), strict=True)
     return PoseBounds(low, high, region.radius if isinstance(region, Cylinder) else math.inf)
 
 
 def approach_limits(asked: ApproachTable, drives: Limits, joints: int) -> Limits:
-    """The approach's own limits, nowhere above the drives', and the drives' torque."""
+    """The approach's own limits, nowhere above the drives', and what else of these a move keeps."""
     own = Limits(asked.speed, asked.acceleration, jerk=asked.jerk)
-    kept = ("torque", "position", "stall_torque", "no_load_speed")  # the RMS is a cycle's
-    merged: dict[str, Any] = {name: getattr(drives, name) for name in kept}
+    merged: dict[str, Any] = {}
     for name in ("speed", "acceleration", "jerk"):
         given = [limit for limits in (own, drives) if (limit := limits.of_joints(name, joints)) is not None]
         merged[name] = tuple(np.min(given, axis=0).tolist())
-    return Limits(**merged)
+    return replace(drives.less(*(limit for limit in drives if limit.not_for_moves)), **merged)

@@ -8,9 +8,10 @@ from typing import Annotated, Literal
 import typer
 
 from studies.cli.ending import ended_by
-from studies.cli.inputs import load, output_folder, robot_for, study_file
+from studies.cli.inputs import load, output_folder, robot_for
 from studies.cli.map_command import map_
 from studies.cli.options import (
+    AllowCodeOption,
     ForceOption,
     FormatOption,
     JsonOption,
@@ -32,22 +33,29 @@ app = typer.Typer(
 
 @app.command("list")
 def list_(json: JsonOption = False) -> None:
-    """List the mechanisms and the studies that come with Linkwright.
+    """List the mechanisms, the studies, the timing laws and the formats of drive files.
 
     linkwright list --json
     """
     from kinematics import MECHANISMS
-    from studies.building import load_study
+    from studies.building import installed_mechanisms, load_study
     from studies.cli import console
-    from studies.study_file import FOLDER, study_names
+    from studies.study_file import read_toml, study_names, study_path
+    from trajectory import LAWS
+    from trajectory.drive_files import FORMATS
 
-    titles = {name: load_study(FOLDER / name / "study.toml").title for name in study_names()}
+    titles = {name: load_study(read_toml(study_path(name))).title for name in study_names()}
     mechanisms = {name: (kind.__doc__ or "").splitlines()[0] for name, kind in MECHANISMS.items()}
+    mechanisms |= {name: f"installed: {point.value}" for name, point in installed_mechanisms().items()}
+    laws = {law.name: law.title for law in LAWS.values()}
+    formats = {name: form.title for name, form in FORMATS.items()}
     if json:
-        console.print_json({"mechanisms": mechanisms, "studies": titles})
+        console.print_json({"mechanisms": mechanisms, "studies": titles, "laws": laws, "formats": formats})
         return
     console.print_table("Mechanisms", ("name", "pose and joints"), list(mechanisms.items()))
     console.print_table("Studies", ("name", "question"), list(titles.items()))
+    console.print_table("Timing laws", ("--law", "what it does"), list(laws.items()))
+    console.print_table("Drive files", ("--format", "what it writes"), list(formats.items()))
 
 
 app.command()(run)
@@ -73,6 +81,7 @@ def certify(
     prototype: PrototypeOption = False,
     seconds: SecondsOption = None,
     force: ForceOption = False,
+    allow_code: AllowCodeOption = False,
 ) -> None:
     """Prove the requirements of the committed optimum at every pose of the region; exits 1 if one is not.
 
@@ -84,8 +93,8 @@ def certify(
     from studies.results import Written, claim_file, write_proofs
     from studies.stages import prove_claims, question_of
 
-    asked = load(study, seconds=seconds)
-    question = question_of(asked, robot_for(study, asked, prototype))
+    file, asked, _ = load(study, allow_code, seconds=seconds)
+    question = question_of(asked, robot_for(file, asked, prototype))
     claims = question.only(margin, at_least)
     folder = output_folder(out, [claim_file(claim.margin) for claim in claims], force)
     with console.progress() as tell:
@@ -105,10 +114,11 @@ def trajectory(
     ] = None,
     prototype: PrototypeOption = False,
     law: Annotated[
-        str | None, typer.Option("--law", help="Timing law, in place of the study's: jerk, toppra or free.")
+        str | None, typer.Option("--law", help="Timing law, in place of the study's (see `linkwright list`).")
     ] = None,
     formats: FormatOption = None,
     force: ForceOption = False,
+    allow_code: AllowCodeOption = False,
 ) -> None:
     """Time and verify the study's cycle on its committed optimum; with --out, write the set-points.
 
@@ -117,28 +127,27 @@ def trajectory(
     linkwright trajectory heli4 --out results --format csv --format ros2
     """
     from kinematics import InvalidValue
-    from studies.building import drive_file_names
     from studies.cli import console
     from studies.results import Written, write_setpoints
     from studies.stages import require_on_cycle, stage, time_cycle
-    from studies.study_file import LAWS, told_at_key
+    from studies.study_file import told_at_key
+    from trajectory import LAWS
+    from trajectory.drive_files import format_named
 
     if law is not None and law not in LAWS:
         raise InvalidValue("--law", law, f"one of {', '.join(LAWS)}")
-    from trajectory.drive_files import format_named
-
     if formats and out is None:
         raise InvalidValue("--format", ", ".join(formats), "--out with it, the folder for the files")
     for name in formats or ():
         format_named(name)
-    asked = load(study, formats)
+    file, asked, drives = load(study, allow_code, formats)
     if asked.trajectory is None:
         raise InvalidValue(f"study {asked.name}", "no [trajectory] table", "one with the cycle to time")
-    robot = robot_for(study, load(study), prototype)
-    folder = output_folder(out, drive_file_names(asked, study_file(study), formats), force)
+    robot = robot_for(file, asked, prototype)
+    folder = output_folder(out, drives, force)
     if law is not None:
         asked = asked.model_copy(update={"trajectory": asked.trajectory.model_copy(update={"law": law})})
-    with told_at_key(study_file(study)), console.progress() as tell, stage("cycle", tell):
+    with told_at_key(file), console.progress() as tell, stage("cycle", tell):
         timing = time_cycle(asked, robot)
     require_on_cycle(asked, timing.cycle)
     console.print_timing(timing, write_setpoints(timing, asked, folder) if folder else Written(), json)
@@ -152,24 +161,24 @@ def report(
     prototype: PrototypeOption = False,
     seconds: SecondsOption = None,
     force: ForceOption = False,
+    allow_code: AllowCodeOption = False,
 ) -> None:
     """Write the report and the set-points of the committed optimum; its proofs are replayed, nothing is optimised.
 
     linkwright report heli4 --out results
     """
-    from studies.building import drive_file_names
     from studies.cli import console
     from studies.committed import committed_certificates
     from studies.results import report_names, write_report
     from studies.stages import certified, run
     from studies.study_file import told_at_key
 
-    asked = load(study, seconds=seconds)
-    robot = robot_for(study, asked, prototype)
-    names = report_names(drive_file_names(asked, study_file(study), None))
+    file, asked, drives = load(study, allow_code, seconds=seconds)
+    robot = robot_for(file, asked, prototype)
+    names = report_names(drives)
     folder = output_folder(out or Path("out") / asked.name, names, force)
-    known = committed_certificates(asked, study_file(study).parent, robot)
-    with told_at_key(study_file(study)), console.progress() as tell:
+    known = committed_certificates(asked, file.path.parent, robot)
+    with told_at_key(file), console.progress() as tell:
         outcome = certified(run(asked, robot, tell), known, tell)
     console.print_outcome(outcome, write_report(outcome, folder, f"linkwright report {study}"), json)
 
@@ -186,6 +195,7 @@ def export(
     json: JsonOption = False,
     prototype: PrototypeOption = False,
     force: ForceOption = False,
+    allow_code: AllowCodeOption = False,
 ) -> None:
     """Write the committed optimum as a multibody model for a simulator, at the cycle's start or at home.
 
@@ -197,11 +207,11 @@ def export(
     from studies.study_file import told_at_key
     from trajectory import require_writable
 
-    asked = load(study)
-    robot = robot_for(study, asked, prototype)
+    file, asked, _ = load(study, allow_code)
+    robot = robot_for(file, asked, prototype)
     require_writable(out.parent)
     rod_middle = None if rods is None else {"split": 0.0, "uniform": UNIFORM}[rods]
-    with told_at_key(study_file(study)):
+    with told_at_key(file):
         written = write_model(robot, asked, rod_middle, out, force)
     console.print_files(Written((written,)), json)
 
@@ -214,6 +224,7 @@ def check(
     ] = None,
     json: JsonOption = False,
     verbose: Annotated[bool, typer.Option("--verbose", help="Show the claims that hold, too.")] = False,
+    allow_code: AllowCodeOption = False,
 ) -> None:
     """Verify committed optimum.toml files again, figure by figure; for CI.
 
@@ -221,14 +232,14 @@ def check(
     """
     from studies.cli import console
     from studies.committed import FILE, check_study
-    from studies.study_file import FOLDER, study_names
+    from studies.study_file import FOLDER, read_toml, study_names, study_path
 
     names = studies or [name for name in study_names() if (FOLDER / name / FILE).is_file()]
     with console.progress() as tell:
         found = {}
         for name in names:
             tell(f"check {name}")
-            found[name] = check_study(study_file(name))
+            found[name] = check_study(read_toml(study_path(name)), allow_code)
     console.print_checks(found, json, verbose)
     if not all(row.holds for rows in found.values() for row in rows):
         raise typer.Exit(1)

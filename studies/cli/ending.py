@@ -44,7 +44,7 @@ def _fail(message: str, status: int, data: dict[str, Any]) -> NoReturn:
 def _data(error: Exception) -> dict[str, Any]:
     """What an error holds beside its words: its kind, problems by file and key, requirements that fail."""
     kind = {"kind": type(error).__name__}
-    lists = {name: getattr(error, name, ()) for name in ("problems", "failed")}
+    lists = {"problems": getattr(error, "faults", ()), "failed": getattr(error, "failed", ())}
     return kind | {name: [_plain(vars(one)) for one in found] for name, found in lists.items() if found}
 
 

@@ -5,38 +5,43 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, NamedTuple, overload
 
 if TYPE_CHECKING:
     from kinematics import Mechanism
     from studies.results import OutputFolder
-    from studies.study_file import BudgetTable, Study
+    from studies.study_file import BudgetTable, Study, TomlFile
 
 
-def study_file(given: str) -> Path:
-    from studies.study_file import study_path
+class Asked(NamedTuple):
+    """What a command is asked: a study, the file that it comes from, and the names of the drive files that it wants."""
 
-    return study_path(given)
+    file: TomlFile
+    study: Study
+    drive_files: tuple[str, ...]
 
 
-def load(given: str, formats: list[str] | None = None, seconds: float | None = None) -> Study:
+def load(given: str, allow_code: bool = False, formats: list[str] | None = None, seconds: float | None = None) -> Asked:
     """The study, checked against its mechanism.
 
     Args:
+        given: its name, or a path.
+        allow_code: whether the module that it may name for its mechanism may run.
         formats: of the drive files, in place of the study's.
         seconds: of each stage, in place of the study's budget.
     """
     from studies.building import drive_file_names, load_study, require_cycle_inside
+    from studies.study_file import read_toml, study_path
 
-    study = load_study(study_file(given))
+    file = read_toml(study_path(given))
+    study = load_study(file, allow_code)
     if formats and study.trajectory is not None:
         files = study.trajectory.model_copy(update={"files": tuple(formats)})
         study = study.model_copy(update={"trajectory": files})
     if seconds is not None:
         study = study.model_copy(update={"budget": _budget(seconds)})
-    require_cycle_inside(study, study_file(given))
-    drive_file_names(study, study_file(given), formats)
-    return study
+    require_cycle_inside(study, file)
+    return Asked(file, study, tuple(drive_file_names(study, file, formats)))
 
 
 def _budget(seconds: float) -> BudgetTable:
@@ -67,9 +72,9 @@ def output_folder(path: Path | None, names: Iterable[str], force: bool) -> Outpu
     return folder
 
 
-def robot_for(given: str, asked: Study, prototype: bool) -> Mechanism:
+def robot_for(file: TomlFile, asked: Study, prototype: bool) -> Mechanism:
     """The committed optimum beside the study, or the study's own geometry."""
     from studies.building import robot_of
     from studies.committed import committed
 
-    return (None if prototype else committed(asked, study_file(given).parent)) or robot_of(asked)
+    return (None if prototype else committed(asked, file.path.parent)) or robot_of(asked)

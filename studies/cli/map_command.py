@@ -8,7 +8,15 @@ from typing import Annotated
 import typer
 
 from studies.cli.inputs import load, output_folder, robot_for
-from studies.cli.options import ForceOption, JsonOption, OutOption, PrototypeOption, SecondsOption, StudyArgument
+from studies.cli.options import (
+    AllowCodeOption,
+    ForceOption,
+    JsonOption,
+    OutOption,
+    PrototypeOption,
+    SecondsOption,
+    StudyArgument,
+)
 
 MarginOption = Annotated[
     str | None,
@@ -63,6 +71,7 @@ def map_(
     prototype: PrototypeOption = False,
     seconds: SecondsOption = None,
     force: ForceOption = False,
+    allow_code: AllowCodeOption = False,
 ) -> None:
     """Map an index over a plane of the workspace: area, mean, deviation, boundary, picture and numbers.
 
@@ -77,8 +86,8 @@ def map_(
     from studies.results import map_names, write_map
     from studies.stages import map_request, run_map
 
-    asked = load(study, seconds=seconds)
-    request = map_request(asked, robot_for(study, asked, prototype), margin, section, at or (), over or (), at_least)
+    file, asked, _ = load(study, allow_code, seconds=seconds)
+    request = map_request(asked, robot_for(file, asked, prototype), margin, section, at or (), over or (), at_least)
     folder = output_folder(out or Path("out") / asked.name, map_names(request), force)
     with console.progress() as tell:
         outcome = run_map(request, tolerance, certified, tell, asked.budget.map)

@@ -21,11 +21,14 @@ FormatOption = Annotated[
     list[str] | None,
     typer.Option(
         "--format",
-        help="With --out: csv, ros2, cia402, zaber, xps or pmac; once for each (default: the study's own, or csv)",
+        help="With --out: a format (see `linkwright list`); once for each (default: the study's own, or csv).",
     ),
 ]
 ForceOption = Annotated[
     bool, typer.Option("--force", help="Replace files that this program did not write, or that were changed since.")
+]
+AllowCodeOption = Annotated[
+    bool, typer.Option("--allow-code", help="Run the Python module that the study names for its mechanism.")
 ]
 SecondsOption = Annotated[
     float | None,

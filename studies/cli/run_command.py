@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from studies.cli.inputs import load, output_folder, study_file
-from studies.cli.options import ForceOption, JsonOption, OutOption, SecondsOption, StudyArgument
+from studies.cli.inputs import load, output_folder
+from studies.cli.options import AllowCodeOption, ForceOption, JsonOption, OutOption, SecondsOption, StudyArgument
 
 
 def run(
@@ -24,6 +24,7 @@ def run(
     ] = False,
     seconds: SecondsOption = None,
     force: ForceOption = False,
+    allow_code: AllowCodeOption = False,
 ) -> None:
     """The whole way: optimise, search densely, time the cycle, verify, prove, write set-points and report.
 
@@ -34,21 +35,22 @@ def run(
 
     linkwright run my_robot/study.toml --commit
     """
-    from studies.building import drive_file_names
     from studies.cli import console
     from studies.results import optimum_names, run_into, run_names, write_run
     from studies.study_file import told_at_key
 
-    asked = load(study, seconds=seconds)
-    names = run_names(asked, drive_file_names(asked, study_file(study), None))
+    file, asked, drives = load(study, allow_code, seconds=seconds)
+    names = run_names(asked, drives)
     folder = output_folder(out or Path("out") / asked.name, names, force)
-    beside = output_folder(study_file(study).parent, optimum_names(asked), force) if commit else None
-    with told_at_key(study_file(study)), console.progress() as tell:
+    beside = output_folder(file.path.parent, optimum_names(asked), force) if commit else None
+    with told_at_key(file), console.progress() as tell:
         outcome = run_into(folder, asked, fresh, tell)
     console.print_outcome(outcome, write_run(outcome, folder, f"linkwright run {study}", beside), json)
 
 
-def optimise(study: StudyArgument, json: JsonOption = False, seconds: SecondsOption = None) -> None:
+def optimise(
+    study: StudyArgument, json: JsonOption = False, seconds: SecondsOption = None, allow_code: AllowCodeOption = False
+) -> None:
     """Optimise the geometry and print what was found; writes nothing.
 
     linkwright optimise heli4 --json
@@ -59,9 +61,10 @@ def optimise(study: StudyArgument, json: JsonOption = False, seconds: SecondsOpt
     from studies.stages import designed
     from studies.study_file import told_at_key
 
-    asked = load(study, seconds=seconds).model_copy(update={"trajectory": None})
+    file, asked, _ = load(study, allow_code, seconds=seconds)
+    asked = asked.model_copy(update={"trajectory": None})
     if asked.optimise is None:
         raise InvalidValue(f"study {asked.name}", "no [optimise] table", "one with the variables to optimise")
-    with told_at_key(study_file(study)), console.progress() as tell:
+    with told_at_key(file), console.progress() as tell:
         outcome = designed(asked, None, tell)
     console.print_outcome(outcome, Written(), json)

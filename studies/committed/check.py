@@ -15,28 +15,28 @@ from studies.building import load_study
 from studies.committed.committed_proofs import proof_rows
 from studies.committed.optimum import FILE, Optimum, optimum_of, read_optimum, told
 from studies.stages import GIVEN, ROUNDING, Outcome, Row, agrees, at_least, run, same, same_digest
-from studies.study_file import Study, changes, cycle_question, design_question, digest_of, told_at_key
+from studies.study_file import Study, TomlFile, changes, cycle_question, design_question, digest_of, told_at_key
 
 _OWN_ROWS = ("asked", "worst_pose", "geometry", "certificate", "made_by.design_digest", "made_by.cycle_digest")
 _SOLVED = "Solve_Succeeded"
 
 
-def check_study(study_file: Path) -> list[Row]:
-    """Everything that the optimum beside a study file claims.
+def check_study(file: TomlFile, allow_code: bool = False) -> list[Row]:
+    """Everything that the optimum beside a study file claims; `allow_code` as for `load_study`.
 
     Raises:
         StudyError: one of the two files cannot be used at all.
     """
-    study = load_study(study_file)
-    claimed = read_optimum(study_file.parent / FILE)
+    study, folder = load_study(file, allow_code), file.path.parent
+    claimed = read_optimum(folder / FILE)
     if not claimed.answers_design(study):
         return _question(claimed, study, "design")  # an answer to another question
     cycle_stands = claimed.asked("cycle") == cycle_question(study)
     asked = study if cycle_stands else study.model_copy(update={"trajectory": None})
-    with told_at_key(study_file):
+    with told_at_key(file):
         outcome = run(asked, claimed.robot(study), lambda _: None, compare_cycles=False)
     outcome = replace(outcome, study=study)
-    return compare(claimed, outcome) + proofs(claimed, outcome, study_file.parent)
+    return compare(claimed, outcome) + proofs(claimed, outcome, folder)
 
 
 def proofs(claimed: Optimum, outcome: Outcome, folder: Path) -> list[Row]:

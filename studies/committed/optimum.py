@@ -11,9 +11,9 @@ import tomli_w
 
 from design import Certificate
 from kinematics import InvalidGeometry, Mechanism
-from studies.building import mechanism_class, robot_of
+from studies.building import robot_of
 from studies.committed.committed_proofs import known_certificates, proof_entries
-from studies.errors import KeyPath, Problem, StudyError, spelled
+from studies.errors import Fault, KeyPath, StudyError, spelled
 from studies.stages import Outcome
 from studies.study_file import FILE as STUDY
 from studies.study_file import Study, TomlFile, changes, cycle_question, design_question, digest_of, read_toml
@@ -42,10 +42,10 @@ class Optimum:
         header = "# Written by linkwright; `linkwright check` verifies it again, figure by figure.\n"
         return header + tomli_w.dumps(self.data, multiline_strings=False)
 
-    def fault(self, path: KeyPath, found: str, expected: str) -> StudyError:
+    def error_at(self, path: KeyPath, found: str, expected: str) -> StudyError:
         """An error at a key of the file."""
         assert self.file is not None
-        return StudyError([self.file.problem(path, found, expected)])
+        return StudyError([self.file.fault(path, found, expected)])
 
     @property
     def certificates(self) -> dict[str, dict[str, Any]]:
@@ -57,7 +57,7 @@ class Optimum:
         """The question "design" or "cycle" that it answers, by key."""
         question = self.data["asked"].get(which, {})
         if not isinstance(question, dict):
-            raise self.fault(("asked", which), spelled(question), "a table")
+            raise self.error_at(("asked", which), spelled(question), "a table")
         return question
 
     def answers_design(self, study: Study) -> bool:
@@ -72,19 +72,19 @@ class Optimum:
             StudyError: another mechanism, a missing or unknown field, or an impossible value, with its line.
         """
         if self.data["mechanism"] != study.mechanism:
-            raise self.fault(("mechanism",), spelled(self.data["mechanism"]), f"the study's, {study.mechanism}")
-        kind = mechanism_class(study.mechanism)
+            raise self.error_at(("mechanism",), spelled(self.data["mechanism"]), f"the study's, {study.mechanism}")
+        kind = study.mechanism_class
         given, known = self.data["geometry"], kind.Geometry.sizes()
         for field in given:
             if field not in known:
-                raise self.fault(("geometry", field), "an unknown field", f"one of {', '.join(known)}")
+                raise self.error_at(("geometry", field), "an unknown field", f"one of {', '.join(known)}")
         for field in known:
             if field not in given:
-                raise self.fault(("geometry",), f"no {field}", f"all of {', '.join(known)}")
+                raise self.error_at(("geometry",), f"no {field}", f"all of {', '.join(known)}")
         try:
             geometry = kind.Geometry(**{name: _tuples(value) for name, value in given.items()})
         except InvalidGeometry as error:
-            raise self.fault(("geometry", error.field), spelled(given[error.field]), error.expected) from error
+            raise self.error_at(("geometry", error.field), spelled(given[error.field]), error.expected) from error
         return robot_of(study, geometry)
 
 
@@ -127,20 +127,20 @@ def read_optimum(path: Path) -> Optimum:
     """
     if not path.is_file():
         how = f"`linkwright run {path.parent / STUDY} --commit` writes it, and --prototype does without"
-        raise StudyError([Problem(path, "", None, "no such file", f"the study's committed optimum: {how}")])
+        raise StudyError([Fault(path, "", None, "no such file", f"the study's committed optimum: {how}")])
     optimum = Optimum((file := read_toml(path)).data, file)
     for key, kind, words in (("mechanism", str, "a name"), ("active", list, "a list"), *_tables()):
         if not isinstance(optimum.data.get(key), kind):
-            raise optimum.fault((key,), spelled(optimum.data[key]) if key in optimum.data else "nothing", words)
+            raise optimum.error_at((key,), spelled(optimum.data[key]) if key in optimum.data else "nothing", words)
     for name, value in optimum.data["figures"].items():
         if isinstance(value, bool) or not isinstance(value, float | int):
-            raise optimum.fault(("figures", name), spelled(value), "a number")
+            raise optimum.error_at(("figures", name), spelled(value), "a number")
     certificates = optimum.data.get("certificate", {})
     if not isinstance(certificates, dict):
-        raise optimum.fault(("certificate",), spelled(certificates), "a table")
+        raise optimum.error_at(("certificate",), spelled(certificates), "a table")
     for name, value in certificates.items():
         if not isinstance(value, dict):
-            raise optimum.fault(("certificate", name), spelled(value), "a table")
+            raise optimum.error_at(("certificate", name), spelled(value), "a table")
     return optimum
 
 
@@ -157,7 +157,7 @@ def committed(study: Study, folder: Path) -> Mechanism | None:
         was, now = optimum.asked("design"), design_question(study)
         found = "; ".join(told_change(key, *values) for key, values in changes(was, now).items())
         mended = "this study's design question; run it again with --commit, or use --prototype"
-        raise optimum.fault(
+        raise optimum.error_at(
             ("asked", "design"), f"an answer to another question ({found or 'changed by hand'})", mended
         )
     return optimum.robot(study)

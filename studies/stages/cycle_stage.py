@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from design import Problem, Region
-from kinematics import InvalidValue, LinkwrightError, Mechanism, to_actuators
+from kinematics import InvalidField, LinkwrightError, Mechanism, to_actuators
 from studies.building import approach_limits, home_of, leaving, limits_of, path_of, problem_of, region_of, timing_of
 from studies.errors import ApproachFailed, Failed, RequirementFailed
 from studies.study_file import Study
@@ -154,7 +154,7 @@ def _require_few(duration: float, period: float) -> None:
     """
     if not duration <= _MOST_SETPOINTS * period:
         expected = f"one that cuts {duration:.3g} s into at most {_MOST_SETPOINTS:,} set-points"
-        raise InvalidValue("Trajectory period", period, expected)
+        raise InvalidField("Trajectory", "period", period, expected)
 
 
 def _require_inside(region: Region, cycle: Cycle) -> None:

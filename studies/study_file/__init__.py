@@ -1,6 +1,7 @@
 """The study file: its tables, their units, and the lines on which its keys stand."""
 
 from studies.study_file.at_key import refused_field, told_at_key, travelled
+from studies.study_file.limits_table import LimitsTable
 from studies.study_file.locate import FILE, FOLDER, study_names, study_path
 from studies.study_file.machine_tables import InertiaTable
 from studies.study_file.path_tables import CycleTable, WaypointPathTable, WaypointTable, adept_cycle
@@ -18,14 +19,13 @@ from studies.study_file.study import (
 )
 from studies.study_file.table import table_of
 from studies.study_file.toml_file import TomlFile, read_toml
-from studies.study_file.trajectory_tables import LAWS, ApproachTable, DriveTable, LimitsTable, TrajectoryTable
-from studies.study_file.units import LARGEST, Conversion, Dimension, Key, Table
+from studies.study_file.trajectory_tables import ApproachTable, DriveTable, TrajectoryTable
+from studies.study_file.units import LARGEST, Conversion, Dimension, Finding, Key, Table
 
 __all__ = [
     "FILE",
     "FOLDER",
     "LARGEST",
-    "LAWS",
     "REGION_KINDS",
     "ApproachTable",
     "BoxTable",
@@ -36,6 +36,7 @@ __all__ = [
     "CylinderTable",
     "Dimension",
     "DriveTable",
+    "Finding",
     "InertiaTable",
     "Key",
     "LimitsTable",

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
-from kinematics import InvalidValue, LinkwrightError, UnreachablePose
-from studies.errors import ApproachFailed, HomeOutOfReach, KeyPath, Problem, StudyError, dotted, spelled
-from studies.study_file.toml_file import TomlFile, read_toml
-from trajectory import LimitsExceeded, PathBeyondLimit, PathRefused, RoughPath, TimingFailed
+from kinematics import InvalidField, LinkwrightError, UnreachablePose
+from studies.errors import ApproachFailed, Fault, HomeOutOfReach, KeyPath, StudyError, dotted, spelled
+from studies.study_file.toml_file import TomlFile
+from trajectory import LimitsExceeded, PathBeyondLimit, PathRefused, RoughPath, TimingFailed, UnsuitedPath
 
 _RECORDS: dict[str, KeyPath] = {
     "Limits": ("trajectory", "limits"),
@@ -17,7 +16,7 @@ _RECORDS: dict[str, KeyPath] = {
     "Drive": ("trajectory", "drive"),
     "DriveTrain": ("inertia", "drive_train"),
 }
-_OF_THE_PATH = (PathRefused, RoughPath, UnreachablePose)
+_OF_THE_PATH = (PathRefused, RoughPath, UnreachablePose, UnsuitedPath)
 _OF_THE_LIMITS = (LimitsExceeded, TimingFailed)
 
 
@@ -31,7 +30,7 @@ class StudyFailed(LinkwrightError):
 
 
 @contextmanager
-def told_at_key(study_file: Path) -> Iterator[None]:
+def told_at_key(file: TomlFile) -> Iterator[None]:
     """Raise the errors of paths, timing, limits and drives again, with their place in the study file.
 
     Raises:
@@ -41,39 +40,33 @@ def told_at_key(study_file: Path) -> Iterator[None]:
     try:
         yield
     except ApproachFailed as error:
-        file = read_toml(study_file)
         raise StudyFailed(file, ("trajectory", "approach"), error) from error
     except HomeOutOfReach as error:
-        raise _of_home(read_toml(study_file), error) from error
+        raise _of_home(file, error) from error
     except PathBeyondLimit as error:
-        file = read_toml(study_file)
         raise StudyFailed(file, _spelling(file, ("trajectory", "limits", error.limit)), error) from error
-    except (InvalidValue, *_OF_THE_PATH, *_OF_THE_LIMITS) as error:
-        file = read_toml(study_file)
-        if isinstance(error, InvalidValue):
-            if (problem := refused_field(file, error)) is not None:
-                raise StudyError([problem]) from error
-            if not error.what.startswith("path "):
-                raise
+    except InvalidField as error:
+        if (fault := refused_field(file, error)) is None:
+            raise
+        raise StudyError([fault]) from error
+    except (*_OF_THE_PATH, *_OF_THE_LIMITS) as error:
         at_limits = isinstance(error, _OF_THE_LIMITS)
         raise StudyFailed(file, ("trajectory", "limits") if at_limits else travelled(file), error) from error
 
 
-def refused_field(file: TomlFile, error: InvalidValue, why: str = "") -> Problem | None:
+def refused_field(file: TomlFile, error: InvalidField, why: str = "") -> Fault | None:
     """What a record's field refuses, at its key; None where the error is of no record that a study fills.
 
     `why` stands behind what was found.
     """
-    record, _, field = error.what.partition(" ")
-    if record not in _RECORDS:
+    if error.record not in _RECORDS:
         return None
-    name, _, of = field.partition(" ")
-    path = _spelling(file, (*_RECORDS[record], name))
+    path = _spelling(file, (*_RECORDS[error.record], error.field))
     try:
         found = spelled(file.value(path))
     except LookupError:
         found = "nothing"
-    return file.problem(path, " ".join(filter(None, (found, of, why))), error.expected)
+    return file.fault(path, " ".join(filter(None, (found, error.use, why))), error.expected)
 
 
 def _spelling(file: TomlFile, path: KeyPath) -> KeyPath:
@@ -85,7 +78,7 @@ def _spelling(file: TomlFile, path: KeyPath) -> KeyPath:
 def _of_home(file: TomlFile, error: HomeOutOfReach) -> StudyError:
     given = next((path for path in file.lines if path[0] == "home"), None)
     found = spelled(file.value(given)) if given else f"none, so the default {error.shown}"
-    return StudyError([file.problem(given or ("home",), found, f"a home in reach ({error.cause})")])
+    return StudyError([file.fault(given or ("home",), found, f"a home in reach ({error.cause})")])
 
 
 def travelled(file: TomlFile) -> KeyPath:

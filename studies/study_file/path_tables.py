@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from kinematics import InvalidValue
-from studies.study_file.table import Name, Positive, StudyTable, gathered, table_of
+from studies.study_file.table import Name, Positive, StudyTable, gathered, one_of, table_of
 from studies.study_file.units import Dimension, Key
 from trajectory import STANDARD_SIZES, AdeptCycle
 
@@ -22,7 +22,7 @@ class CycleTable(StudyTable):
 
     pick: Annotated[tuple[float, float, float], Key("three lengths x, y, z", LENGTH, place=True)]
     """Where the cycle starts."""
-    size: Annotated[str | None, Key("one of", choices=tuple(STANDARD_SIZES))] = None
+    size: Annotated[Annotated[str, one_of(STANDARD_SIZES)] | None, Key("one of", choices=tuple(STANDARD_SIZES))] = None
     """Lift, span and place lift at once [mm]. It says nothing about the corners, so it needs a blend beside it."""
     place: Annotated[
         tuple[float, float, float] | None,
@@ -57,13 +57,6 @@ class CycleTable(StudyTable):
     """The mass at the tool."""
     payload_back: Annotated[float | None, Field(ge=0), Key("a mass >= 0 (kg)")] = None
     """The mass at the tool on the way back. None takes the same."""
-
-    @field_validator("size")
-    @classmethod
-    def _size_known(cls, size: str | None) -> str | None:
-        if size is not None and size not in STANDARD_SIZES:
-            raise ValueError("no standard size")
-        return size
 
     @field_validator("lift", "span", "place", "place_lift")
     @classmethod

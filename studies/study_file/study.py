@@ -2,8 +2,9 @@
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, SkipValidation, model_validator
 
+from kinematics import Mechanism
 from studies.study_file.machine_tables import InertiaTable, Ranges
 from studies.study_file.questions import digest_of, plain
 from studies.study_file.table import Entry, Interval, Name, Positive, StudyTable, gathered, table_of
@@ -141,8 +142,12 @@ class Study(StudyTable):
     """The folder's name."""
     title: Annotated[Name, Key("a title")]
     """The report's title."""
-    mechanism: Annotated[str, Key("one of")]
-    """The mechanism to study."""
+    mechanism: Annotated[str, Key("the name of a mechanism, or module:Class")]
+    """The mechanism to study: a name, or `module:Class` of a module beside the study or on Python's path."""
+    mechanism_class: Annotated[type[Mechanism], SkipValidation, Field(exclude=True, repr=False)]
+    """Its class."""
+    code: str = ""
+    """SHA-256 of the file that defines the mechanism; "" for one of Linkwright's own."""
     geometry: Annotated[dict[str, GeometryValue], Field(default_factory=dict), Table({})]
     """The geometry, where it differs from the prototype's [m, rad, m per turn]."""
     inertia: Annotated[InertiaTable, Table({})] = InertiaTable()

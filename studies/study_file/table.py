@@ -1,5 +1,6 @@
 """What every table of a study file shares: strict frozen models, the kinds of their values, the keys that they take."""
 
+from collections.abc import Collection
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
@@ -24,6 +25,17 @@ Interval = Annotated[tuple[float, float], AfterValidator(_rising)]
 Entry = Annotated[tuple[float, float], AfterValidator(_not_falling)]
 PerJoint = Positive | Annotated[tuple[Positive, ...], Field(min_length=1)]
 Name = Annotated[str, Field(min_length=1)]
+
+
+def one_of(choices: Collection[str]) -> AfterValidator:
+    """Checks that a word is among the choices."""
+
+    def check(word: str) -> str:
+        if word not in choices:
+            raise ValueError("no such choice")
+        return word
+
+    return AfterValidator(check)
 
 
 class StudyTable(BaseModel):

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from studies.errors import KeyPath, Problem, StudyError, dotted
+from studies.errors import Fault, KeyPath, StudyError, dotted
 
 _TOKEN = re.compile(
     r"""
@@ -51,9 +51,9 @@ class TomlFile:
         known = (self.lines[path[:n]] for n in range(len(path), 0, -1) if path[:n] in self.lines)
         return next(known, 1)
 
-    def problem(self, path: KeyPath, found: str, expected: str) -> Problem:
-        """A `Problem` at `path`."""
-        return Problem(self.path, dotted(path), self.line(path), found, expected)
+    def fault(self, path: KeyPath, found: str, expected: str) -> Fault:
+        """A `Fault` at `path`."""
+        return Fault(self.path, dotted(path), self.line(path), found, expected)
 
 
 def read_toml(path: Path) -> TomlFile:
@@ -65,7 +65,7 @@ def read_toml(path: Path) -> TomlFile:
     try:
         data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # not only TOMLDecodeError: see a 5000-digit integer
-        raise StudyError([_syntax_problem(path, text, error)]) from None
+        raise StudyError([_syntax_fault(path, text, error)]) from None
     return TomlFile(path, data, key_lines(text))
 
 
@@ -76,22 +76,22 @@ def _read_text(path: Path) -> str:
         raw = path.read_bytes()
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise StudyError([Problem(path, "", None, reason.lower(), "a readable TOML file")]) from None
+        raise StudyError([Fault(path, "", None, reason.lower(), "a readable TOML file")]) from None
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
-        raise StudyError([Problem(path, "", line, f"byte 0x{raw[error.start]:02x}", "UTF-8 text")]) from None
+        raise StudyError([Fault(path, "", line, f"byte 0x{raw[error.start]:02x}", "UTF-8 text")]) from None
 
 
-def _syntax_problem(path: Path, text: str, error: Exception) -> Problem:
+def _syntax_fault(path: Path, text: str, error: Exception) -> Fault:
     if isinstance(error, RecursionError):
-        return Problem(path, "", None, "values nested too deeply", "valid TOML")
+        return Fault(path, "", None, "values nested too deeply", "valid TOML")
     reason, _, place = str(error).partition(" (at ")
     line = re.match(r"line (\d+)", place)
     last = text.rstrip().count("\n") + 1
     at = int(line[1]) if line else last if place else None
-    return Problem(path, "", at, f"a syntax error ({reason.lower()})", "valid TOML")
+    return Fault(path, "", at, f"a syntax error ({reason.lower()})", "valid TOML")
 
 
 def key_lines(text: str) -> dict[KeyPath, int]:

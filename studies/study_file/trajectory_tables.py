@@ -1,57 +1,17 @@
 """How a study's cycle is timed: limits, law, approach, and the files for the drives."""
 
-from typing import Annotated, Literal, get_args
+from typing import Annotated
 
 from pydantic import Field, ValidationInfo, field_validator
 
+from studies.study_file.limits_table import LimitsTable
 from studies.study_file.path_tables import CycleTable, WaypointPathTable
-from studies.study_file.table import Interval, Name, PerJoint, Positive, StudyTable, table_of
+from studies.study_file.table import Name, PerJoint, Positive, StudyTable, one_of, table_of
 from studies.study_file.units import Dimension, Key
+from trajectory import LAWS
+from trajectory.drive_files import FORMATS
 
-
-class LimitsTable(StudyTable):
-    """What each joint can do: a number for all joints, or one a joint; None is no limit."""
-
-    speed: Annotated[PerJoint, Key("a speed > 0, or one a joint", Dimension.JOINT_SPEED)]
-    """Of the joints."""
-    acceleration: Annotated[PerJoint | None, Key("a number > 0, or one a joint (rad/s^2, or m/s^2)")] = None
-    """Of the joints."""
-    torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
-    """Peak of the drives."""
-    jerk: Annotated[PerJoint | None, Key("a number > 0, or one a joint (rad/s^3, or m/s^3)")] = None
-    """Of the joints; the law `jerk` needs one, `toppra` keeps none."""
-    tool_speed: Annotated[Positive | None, Key("a speed > 0 (m/s)")] = None
-    """Of the tool point."""
-    tool_acceleration: Annotated[Positive | None, Key("an acceleration > 0 (m/s^2)")] = None
-    """Of the tool point."""
-    position: Annotated[
-        Interval | Annotated[tuple[Interval, ...], Field(min_length=1)] | None,
-        Key("low < high, or one such pair a joint (rad, or m)", place=True),
-    ] = None
-    """Of the joints; the path alone decides whether it is kept."""
-    stall_torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
-    """With no_load_speed: abs(torque) <= stall_torque (1 - abs(speed) / no_load_speed)."""
-    no_load_speed: Annotated[
-        PerJoint | None,
-        Field(validate_default=True),
-        Key("a speed > 0, or one a joint, if and only if there is a stall_torque", Dimension.JOINT_SPEED),
-    ] = None
-    """Both or neither: the ends of the speed-torque line."""
-    rms_torque: Annotated[PerJoint | None, Key("a number > 0, or one a joint (N m, or N)")] = None
-    """Root mean square of each way by itself, and so of the cycle; not with the law `toppra`."""
-
-    @field_validator("no_load_speed")
-    @classmethod
-    def _whole_line(cls, speed: PerJoint | None, info: ValidationInfo) -> PerJoint | None:
-        if "stall_torque" in info.data and (info.data["stall_torque"] is None) != (speed is None):
-            raise ValueError("half of a line")
-        return speed
-
-
-File = Literal["csv", "ros2", "cia402", "zaber", "xps", "pmac"]
-FILES = get_args(File)
 Increments = Annotated[int, Field(gt=0)]
-LAWS = ("jerk", "toppra", "free")
 
 
 class ApproachTable(StudyTable):
@@ -85,7 +45,7 @@ class DriveTable(StudyTable):
 class TrajectoryTable(StudyTable):
     """How the cycle is timed, and how its set-points are sampled."""
 
-    law: Annotated[Literal["jerk", "toppra", "free"], Key("one of", choices=LAWS)] = "jerk"
+    law: Annotated[str, one_of(LAWS), Key("one of", choices=tuple(LAWS))] = "jerk"
     """How it is timed; `toppra` keeps no jerk limit, `free` finds the path too."""
     grid: Annotated[int, Field(ge=1000, le=1_000_000), Key("a whole number from 1000 to 1000000")] = 2000
     """Points along the path, at first: the law `toppra` adds what it needs."""
@@ -99,7 +59,10 @@ class TrajectoryTable(StudyTable):
     """What the drives and the tool may do."""
     approach: Annotated[ApproachTable | None, table_of(ApproachTable)] = None
     """The move from home to the start; None leaves it out."""
-    files: Annotated[Annotated[tuple[File, ...], Field(min_length=1)], Key("a list out of", choices=FILES)] = ("csv",)
+    files: Annotated[
+        Annotated[tuple[Annotated[str, one_of(FORMATS)], ...], Field(min_length=1)],
+        Key("a list out of", choices=tuple(FORMATS)),
+    ] = ("csv",)
     """Formats of the set-points."""
     drive: Annotated[DriveTable, table_of(DriveTable)] = DriveTable()
     """What the drive files need of the machine."""

@@ -6,26 +6,25 @@ Where the tangent jumps, as at the turning point, no law may pass at speed: ther
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from kinematics import InvalidValue, Mechanism
+from kinematics import InvalidValue, Mechanism, Value
 from trajectory.cycles.least_stretch import Repaired, repair
 from trajectory.errors import LimitsExceeded
+from trajectory.laws import TimingLaw
 from trajectory.limits import Limits
 from trajectory.motions import InTime, PoseSpline, TimedMotion
 from trajectory.paths import Path, Reversed, pieces, places
 from trajectory.verification import PathCertificate, Verification, Way, certify_path, verify, worst_of
 
-Timing = Callable[[Mechanism, Path, Limits, float], TimedMotion]
 _SAME = 1e-9  # rad, or of the path's length: no further apart are two poses the same
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class Piece(Value):
     """One piece, from rest to rest, within its limits.
 
     Attributes:
@@ -50,7 +49,7 @@ class Piece:
 
 
 @dataclass(frozen=True, eq=False)
-class Cycle:
+class Cycle(Value):
     """A path that was proved, and its pieces in order, with the limits and the robot for which they are timed.
 
     Attributes:
@@ -120,7 +119,7 @@ def there_and_back(
     path: Path,
     limits: Limits,
     payload: float,
-    timing: Timing,
+    timing: TimingLaw,
     payload_back: float | None = None,
     cannot_keep: tuple[str, ...] = (),
 ) -> Cycle:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinematics import Array, InvalidValue
+from kinematics import Array, InvalidField
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_ ./-]*")
 
@@ -36,12 +36,12 @@ class Drive:
         if self.axes is not None:
             object.__setattr__(self, "axes", tuple(self.axes))
             if len(set(self.axes)) != len(self.axes) or not all(_NAME.fullmatch(name) for name in self.axes):
-                raise InvalidValue("Drive axes", self.axes, "different names of letters, digits and _ ./-")
+                raise InvalidField("Drive", "axes", self.axes, "different names of letters, digits and _ ./-")
         increments = () if self.increments is None else _several(self.increments)
         if not all(isinstance(n, int) and n > 0 for n in increments):
-            raise InvalidValue("Drive increments", self.increments, "whole numbers > 0")
+            raise InvalidField("Drive", "increments", self.increments, "whole numbers > 0")
         if not all(math.isfinite(ratio) and ratio != 0 for ratio in _several(self.encoder_gear)):
-            raise InvalidValue("Drive encoder_gear", self.encoder_gear, "finite numbers other than 0")
+            raise InvalidField("Drive", "encoder_gear", self.encoder_gear, "finite numbers other than 0")
 
     def names(self, own: tuple[str, ...]) -> tuple[str, ...]:
         """(m,) the axes' names; `own` are the format's.
@@ -52,7 +52,7 @@ class Drive:
         if self.axes is None:
             return own
         if len(self.axes) != len(own):
-            raise InvalidValue("Drive axes", self.axes, f"{len(own)} names, one an actuator")
+            raise InvalidField("Drive", "axes", self.axes, f"{len(own)} names, one an actuator")
         return self.axes
 
     def increments_per_unit(self, joint_units: tuple[str, ...]) -> Array:
@@ -62,11 +62,11 @@ class Drive:
             InvalidValue: increments are not given, or for another number of axes.
         """
         if self.increments is None:
-            raise InvalidValue("Drive increments", None, "the encoder's, in a turn of it (in a metre on a rail)")
+            raise InvalidField("Drive", "increments", None, "the encoder's, in a turn of it (in a metre on a rail)")
         count = len(joint_units)
         for name, value in (("increments", self.increments), ("encoder_gear", self.encoder_gear)):
             if len(_several(value)) not in (1, count):
-                raise InvalidValue(f"Drive {name}", value, f"one number or {count}, one an actuator")
+                raise InvalidField("Drive", name, value, f"one number or {count}, one an actuator")
         turns = np.array([2 * math.pi if unit == "rad" else 1.0 for unit in joint_units])
         return np.asarray(self.increments) * np.asarray(self.encoder_gear) / turns
 

@@ -7,7 +7,7 @@ velocities by Isx90 = 1000, its default: in a second. The axes must stand at the
 
 from __future__ import annotations
 
-from kinematics import InvalidValue
+from kinematics import InvalidField, InvalidValue
 from trajectory.drive_files.drive import Drive
 from trajectory.drive_files.text import decimal, header_lines, in_degrees_or_mm, unit_names
 from trajectory.setpoints import Setpoints
@@ -46,7 +46,7 @@ def _letters(setpoints: Setpoints, drive: Drive) -> tuple[str, ...]:
         raise InvalidValue("axes of a PMAC program", count, f"at most {len(LETTERS)}")
     names = drive.names(LETTERS[:count])
     if not set(names) <= set(LETTERS):
-        raise InvalidValue("Drive axes of a PMAC program", names, f"letters out of {' '.join(LETTERS)}")
+        raise InvalidField("Drive", "axes", names, f"letters out of {' '.join(LETTERS)}", "of a PMAC program")
     return names
 
 

@@ -1,1 +1,10 @@
-"""Timing laws, one room each."""
+"""Timing laws, one room each, and their registry."""
+
+from trajectory.laws.registry import LAWS, Law, TimingLaw, law_named
+
+__all__ = [
+    "LAWS",
+    "Law",
+    "TimingLaw",
+    "law_named",
+]

@@ -6,7 +6,7 @@ import numpy as np
 
 from kinematics import Array, Mechanism, inverse_dynamics, to_actuators
 from trajectory.errors import PathBeyondLimit
-from trajectory.limits import Limits
+from trajectory.limits import JOINT_RANGES, InstantLimit, Limit, Limits
 from trajectory.paths import Path
 
 _ROUNDING = 1e-9  # relative
@@ -20,7 +20,7 @@ def require_possible(robot: Mechanism, path: Path, limits: Limits, payload: floa
     Args:
         robot: that reaches every pose of the path.
         path: of its poses.
-        limits: of which position, torque and stall torque are looked at.
+        limits: of which the ranges are looked at, and those that leave the drives less torque than they need at rest.
         payload: mass at the tool [kg].
         s: (k,) arc lengths where the position is looked at [m].
 
@@ -30,7 +30,8 @@ def require_possible(robot: Mechanism, path: Path, limits: Limits, payload: floa
     count = len(robot.joint_names)
     if (ranges := limits.ranges(count)) is not None:
         (poses,) = path.evaluate(s, 0)
-        _require(robot, path, "position", s, to_actuators(robot, robot.inverse(poses)), ranges)
+        positions = to_actuators(robot, robot.inverse(poses))
+        _require(robot, path, JOINT_RANGES, s, positions, ranges)
     require_held(robot, path, limits, payload, np.array([0.0, path.length]))
 
 
@@ -46,12 +47,13 @@ def require_held(robot: Mechanism, path: Path, limits: Limits, payload: float, s
     """
     (poses,) = path.evaluate(s, 0)
     rest = np.zeros_like(poses)
-    for name in ("torque", "stall_torque"):
-        if (most := limits.of_joints(name, len(robot.joint_names))) is not None:
-            _require(robot, path, name, s, inverse_dynamics(robot, payload, poses, rest, rest), (-most, most))
+    for limit in limits:
+        most = limit.holding_torque(limits, len(robot.joint_names)) if isinstance(limit, InstantLimit) else None
+        if most is not None:
+            _require(robot, path, limit, s, inverse_dynamics(robot, payload, poses, rest, rest), (-most, most))
 
 
-def _require(robot: Mechanism, path: Path, limit: str, s: Array, values: Array, ranges: tuple[Array, Array]) -> None:
+def _require(robot: Mechanism, path: Path, limit: Limit, s: Array, values: Array, ranges: tuple[Array, Array]) -> None:
     """Raise for the value that is furthest beyond its range, over the range's width."""
     low, high = ranges
     beyond = np.maximum(low - values, values - high) / (high - low)
@@ -59,12 +61,13 @@ def _require(robot: Mechanism, path: Path, limit: str, s: Array, values: Array, 
     if beyond[k, joint] > _ROUNDING:
         unit, at = robot.actuator_units[joint], float(s[k])
         raise PathBeyondLimit(
-            limit,
+            limit.fields[0].name,
+            limit.of_torque,
             robot.actuator_names[joint],
             at,
             path.evaluate(s[k], 0)[0].tolist(),
             float(values[k, joint]),
             (float(low[joint]), float(high[joint])),
-            unit if limit == "position" else {"rad": "N m", "m": "N"}[unit],
+            {"rad": "N m", "m": "N"}[unit] if limit.of_torque else unit,
             path.waypoint(at),
         )

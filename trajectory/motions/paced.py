@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinematics import Array, InvalidValue
+from kinematics import Array, InvalidValue, Value
 from trajectory.motions.motion import PoseMotion, largest_speed, travelled, travelled_snap
 from trajectory.motions.time_law import PathMotion, TimeLaw
 from trajectory.motions.timed_motion import TimedMotion
@@ -17,7 +17,7 @@ _ROUNDING = 1e-9  # of a part
 
 
 @dataclass(frozen=True, eq=False)
-class PacedMotion:
+class PacedMotion(Value):
     """p(tau(t)): the same way in space, or a part of it, whatever the pace. tau' = 1 is the motion itself.
 
     Attributes:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinematics import Array, InvalidShape, InvalidValue
+from kinematics import Array, InvalidField, InvalidShape, InvalidValue, Value
 from trajectory.motions.motion import PoseMotion
 from trajectory.paths import PathBox, located, throughout
 
@@ -17,7 +17,7 @@ _SLACK = (
 
 
 @dataclass(frozen=True, eq=False)
-class PoseSpline:
+class PoseSpline(Value):
     """The pose with a piecewise constant third derivative.
 
     Attributes:
@@ -41,22 +41,20 @@ class PoseSpline:
 
     def __post_init__(self) -> None:
         if self.times.ndim != 1 or self.times[0] != 0.0 or not (np.diff(self.times) > 0.0).all():
-            raise InvalidValue("PoseSpline times", "knots that do not increase from 0", "increasing from 0 s")
+            raise InvalidField("PoseSpline", "times", "knots that do not increase from 0", "increasing from 0 s")
         shape = (self.times.size - 1, np.shape(self.ends)[-1])
         for field in ("pose", "velocity", "acceleration", "jerk"):
             values = getattr(self, field)
             if np.shape(values) != shape:
                 raise InvalidShape(f"PoseSpline {field}", [str(k) for k in range(shape[1])], np.shape(values))
             if not np.isfinite(values).all():
-                raise InvalidValue(f"PoseSpline {field}", "a number that is not finite", "finite numbers")
+                raise InvalidField("PoseSpline", field, "a number that is not finite", "finite numbers")
         _, motion = self.within(np.array([0.0, 1.0]))
         for field, values in zip(("pose", "velocity", "acceleration"), motion, strict=False):
             gap = np.abs(values[:-1, 1] - values[1:, 0])
             if not (gap <= _ROUNDING * np.abs(values).max()).all():
                 k = int(gap.max(axis=-1).argmax()) + 1
-                raise InvalidValue(
-                    f"PoseSpline {field}", f"a gap of {gap.max():.3g} at knot {k}", "intervals that join"
-                )
+                raise InvalidField("PoseSpline", field, f"a gap of {gap.max():.3g} at knot {k}", "intervals that join")
 
     @property
     def progress(self) -> Array:

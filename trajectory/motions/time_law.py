@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics import Array, InvalidShape, InvalidValue
+from kinematics import Array, InvalidField, InvalidShape, InvalidValue, Value, bisected
 from trajectory.paths import located, throughout
 
+_FINEST = 2.0**-60  # of an interval: how closely the time is found at which a place is passed
 _ROUNDING = 1e-9  # of the length or the speed
 _ULPS = 2.0  # of the duration: both knots of an interval are rounded
 _SAME = 1e-13  # of the length: closer knots are one
-_BISECTIONS = 60  # down to rounding
 
 
 class PathMotion(NamedTuple):
@@ -28,7 +28,7 @@ class PathMotion(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class TimeLaw:
+class TimeLaw(Value):
     """Arc length as a piecewise quartic of time: s''' is linear in each interval.
 
     Attributes:
@@ -59,13 +59,15 @@ class TimeLaw:
             if array.shape != (expected,):
                 raise InvalidShape(f"TimeLaw {field}", [str(k) for k in range(expected)], array.shape)
             if not np.isfinite(array).all():
-                raise InvalidValue(f"TimeLaw {field}", "a number that is not finite", "finite numbers")
+                raise InvalidField("TimeLaw", field, "a number that is not finite", "finite numbers")
             array.setflags(write=False)
             object.__setattr__(self, field, array)
         if self.times.size < 2 or self.times[0] != 0.0 or not (np.diff(self.times) > 0).all():
-            raise InvalidValue("TimeLaw times", "knots that do not increase from 0", "increasing from 0 s")
+            raise InvalidField("TimeLaw", "times", "knots that do not increase from 0", "increasing from 0 s")
         if (self.speed < 0).any():
-            raise InvalidValue("TimeLaw speed", float(self.speed.min()), "at least 0 m/s: a path is not travelled back")
+            raise InvalidField(
+                "TimeLaw", "speed", float(self.speed.min()), "at least 0 m/s: a path is not travelled back"
+            )
         self._require_joined()
 
     @classmethod
@@ -83,10 +85,12 @@ class TimeLaw:
         position, speed = np.asarray(position, dtype=float), np.asarray(speed, dtype=float)
         steps, sums = np.diff(position), speed[1:] + speed[:-1]
         if not (steps > 0).all():
-            raise InvalidValue("TimeLaw position", "gridpoints that do not increase", "increasing arc lengths")
+            raise InvalidField("TimeLaw", "position", "gridpoints that do not increase", "increasing arc lengths")
         if not (sums > 0).all():
             at = float(position[int(np.argmin(sums))])
-            raise InvalidValue("TimeLaw speed", f"rest all through the interval at s = {at:.6g} m", "a speed > 0 m/s")
+            raise InvalidField(
+                "TimeLaw", "speed", f"rest all through the interval at s = {at:.6g} m", "a speed > 0 m/s"
+            )
         times = np.concatenate([[0.0], np.cumsum(2 * steps / sums)])
         none = np.zeros_like(steps)
         return cls(name, times, position, speed, np.diff(speed) * sums / (2 * steps), none, none)
@@ -170,11 +174,8 @@ class TimeLaw:
         away = apart > _SAME * np.ptp(self.position)
         interval, positions = after[away] - 1, positions[away]
         low, high = np.zeros(interval.size), np.diff(self.times)[interval]
-        for _ in range(_BISECTIONS):
-            middle = 0.5 * low + 0.5 * high
-            before = self.inside(interval, middle).position < positions
-            low, high = np.where(before, middle, low), np.where(before, high, middle)
-        return interval, low
+        finest = _FINEST * high
+        return interval, bisected(lambda since: self.inside(interval, since).position < positions, low, high, finest)[0]
 
     def inside(self, interval: Array, since: Array) -> PathMotion:
         """In these intervals (...,), from 0, so long (...,) after each one's start [s]: its one-sided limits too."""
@@ -196,4 +197,4 @@ class TimeLaw:
         for field, gap, scale, steepness in gaps:
             if not (gap <= _ROUNDING * scale + late * steepness).all():
                 k = int(np.argmax(gap))
-                raise InvalidValue(f"TimeLaw {field}", f"a gap of {gap[k]:.3g} at knot {k + 1}", "intervals that join")
+                raise InvalidField("TimeLaw", field, f"a gap of {gap[k]:.3g} at knot {k + 1}", "intervals that join")

@@ -8,7 +8,7 @@ from typing import Protocol, Self
 
 import numpy as np
 
-from kinematics import Array, InvalidValue
+from kinematics import Array, InvalidValue, Value
 from trajectory.motions.motion import PoseMotion, largest_speed, pose_motion, travelled_snap
 from trajectory.motions.time_law import TimeLaw
 from trajectory.paths import Path, interval_of, places
@@ -73,7 +73,7 @@ class TimedMotion(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class TimedPath:
+class TimedPath(Value):
     """A path travelled by a time law. Its intervals are those of the law, cut where it passes the path's knots.
 
     Attributes:

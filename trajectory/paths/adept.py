@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from kinematics import Array, InvalidValue
+from kinematics import Array, InvalidField, InvalidValue
 from trajectory.paths.path import SCHOENFLIES, Path, PathBox, Reversed
 from trajectory.paths.rounded_path import RoundedPath
 
@@ -59,31 +59,31 @@ class AdeptCycle:
             value = tuple(float(v) for v in getattr(self, name))
             object.__setattr__(self, name, value)
             if len(value) != (3 if name == "pick" else 2):
-                raise InvalidValue(f"AdeptCycle {name}", value, expected)
+                raise InvalidField("AdeptCycle", name, value, expected)
         given = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "pose_names"}
         given = {name: value for name, value in given.items() if value is not None}
         for name, value in given.items():
             if not np.all(np.isfinite(value)):
-                raise InvalidValue(f"AdeptCycle {name}", value, "finite")
+                raise InvalidField("AdeptCycle", name, value, "finite")
             if name in ("lift", "place_lift", "span", "blend") and value <= 0:
-                raise InvalidValue(f"AdeptCycle {name}", value, "a length > 0 m")
+                raise InvalidField("AdeptCycle", name, value, "a length > 0 m")
         self._require_angles()
         self._require_corners()
 
     def _require_angles(self) -> None:
         if self.pose_names[:3] != SCHOENFLIES[:3]:
-            raise InvalidValue("AdeptCycle pose_names", self.pose_names, "x, y, z and then angles")
+            raise InvalidField("AdeptCycle", "pose_names", self.pose_names, "x, y, z and then angles")
         angles = set(self.pose_names[3:])
         for name, missing in (("turn", not angles & {"theta", "yaw"}), ("tilt", not {"roll", "pitch"} <= angles)):
             if missing and np.any(getattr(self, name)):
                 what = f"0: the pose is {', '.join(self.pose_names)}"
-                raise InvalidValue(f"AdeptCycle {name}", getattr(self, name), what)
+                raise InvalidField("AdeptCycle", name, getattr(self, name), what)
 
     def _require_corners(self) -> None:
         across = math.hypot(self.span, self.rise + self.down - self.lift)
         for size, what in ((self.lift, "the lift"), (self.down, "the place lift"), (across / 2, "half of the span")):
             if self.blend > size:
-                raise InvalidValue("AdeptCycle blend", self.blend, f"at most {what}, {size:.9g} m")
+                raise InvalidField("AdeptCycle", "blend", self.blend, f"at most {what}, {size:.9g} m")
 
     @property
     def down(self) -> float:

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from kinematics import Array, InvalidValue
+from kinematics import Array
+from trajectory.errors import UnsuitedPath
 from trajectory.paths.adept import AdeptCycle
 from trajectory.paths.path import Path, Reversed
 
@@ -39,13 +40,11 @@ class Arch:
         """The arch of a cycle or of its way back.
 
         Raises:
-            InvalidValue: any other path: nothing says where the tool may go beside it.
+            UnsuitedPath: any other path: nothing says where the tool may go beside it.
         """
         cycle = path.path if isinstance(path, Reversed) else path
         if not isinstance(cycle, AdeptCycle):
-            raise InvalidValue(
-                "path of the free law", "another one", "an Adept cycle: its arch says where the tool may go"
-            )
+            raise UnsuitedPath("free", "another one", "an Adept cycle: its arch says where the tool may go")
         return cls(cycle)
 
     def sides(self, x: ca.SX, y: ca.SX, z: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:

@@ -10,7 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from kinematics import Array, InvalidShape, InvalidValue, Mechanism, actuator_motion, from_actuators
+from kinematics import (
+    Array,
+    InvalidField,
+    InvalidShape,
+    InvalidValue,
+    Mechanism,
+    Value,
+    actuator_motion,
+    from_actuators,
+)
 from trajectory.cycles import Cycle, Piece, periods_of
 from trajectory.limits import Limits
 from trajectory.motions import Motion, motion_of
@@ -30,7 +39,7 @@ _CONSISTENT = 1e-9  # of the loop closure [rad, or over the robot's size]
 
 
 @dataclass(frozen=True, eq=False)
-class Setpoints:
+class Setpoints(Value):
     """One row a period, the last one closes the cycle; SI units.
 
     Attributes:
@@ -62,7 +71,7 @@ class Setpoints:
             if getattr(self, name).shape != (rows, len(columns)):
                 raise InvalidShape(f"Setpoints {name}", columns, getattr(self, name).shape)
         if len(self.joint_units) != len(self.joint_names) or not set(self.joint_units) <= {"rad", "m"}:
-            raise InvalidValue("Setpoints joint_units", self.joint_units, "rad or m, one a joint")
+            raise InvalidField("Setpoints", "joint_units", self.joint_units, "rad or m, one a joint")
 
     @property
     def columns(self) -> tuple[str, ...]:

@@ -22,7 +22,7 @@ import math
 import numpy as np
 
 from kinematics import Array, Mechanism, actuator_motion, inverse_dynamics
-from trajectory.limits import Limits
+from trajectory.limits import Along, Disc, Limits, Linear, TorqueAlong
 from trajectory.motions import SAME, PoseMotion, TimedMotion, TimeLaw, torque_by_rate
 from trajectory.paths import interval_of, places
 
@@ -62,38 +62,41 @@ def steps_of(timed: TimedMotion, knots: Array, fractions: Array) -> PoseMotion:
     return timed.inside(interval, tau - timed.times[interval])
 
 
+def along_itself(robot: Mechanism, tool: PoseMotion, payload: float) -> Along:
+    """A motion as a way whose parameter is its own time (..., n); what friction a pace loses at rest is kept apart."""
+    pose, first, second, _ = tool
+    point, none = places(robot.pose_names), np.zeros_like(pose)
+
+    def split() -> TorqueAlong:
+        parts = torque_by_rate(robot, payload, pose, first, second)
+        by_u = inverse_dynamics(robot, payload, pose, first, second + first) - sum(parts)
+        still = inverse_dynamics(robot, payload, pose, none, none)
+        return TorqueAlong(by_u, parts.quadratic, parts.linear, parts.constant, still - parts.constant, parts.constant)
+
+    joints = actuator_motion(robot, *tool)
+    return Along(joints, (first[..., :point], second[..., :point]), split)
+
+
 def _pace(robot: Mechanism, timed: TimedMotion, knots: Array, limits: Limits, payload: float) -> tuple[Array, Array]:
     """Times of the motion (k,) and the pace there, from 1 to 0."""
-    pose, first, second, _ = steps_of(timed, knots, np.array([0.0, 1.0]))
-    return _brake(knots, _rows(robot, pose, first, second, limits, payload), _disc(robot, first, second, limits))
+    along = along_itself(robot, steps_of(timed, knots, np.array([0.0, 1.0])), payload)
+    return _brake(knots, _rows(limits, along), limits.constraints(Disc, along))
 
 
-def _rows(robot: Mechanism, pose: Array, first: Array, second: Array, limits: Limits, payload: float) -> Rows:
-    """Joint acceleration and torque over their limits: |by_u u + by_x x + still| <= 1."""
-    count, none = len(robot.joint_names), np.zeros_like(pose)
-    joints = actuator_motion(robot, pose, first, second, none)
-    rows = [(np.zeros((*pose.shape[:-1], 0)),) * 3]
-    acceleration, torque = limits.of_joints("acceleration", count), limits.of_joints("torque", count)
-    if acceleration is not None:
-        rows.append((joints.first / acceleration, joints.second / acceleration, np.zeros_like(joints.first)))
-    if torque is not None:
-        along = torque_by_rate(robot, payload, pose, first, second)
-        by_u = inverse_dynamics(robot, payload, pose, first, second + first) - sum(along)
-        # Friction as at full speed, without the viscous part, and none as at rest: so all that lies between.
-        still = inverse_dynamics(robot, payload, pose, none, none)
-        constants = (along.constant + along.linear, along.constant, still)
-        rows += [(by_u / torque, along.quadratic / torque, constant / torque) for constant in constants]
+def _rows(limits: Limits, along: Along) -> Rows:
+    """What is linear, over its limit: |by_u u + by_x x + still| <= 1."""
+    none = along.joints.first[..., :0]
+    rows = [(none, none, none)]
+    for row in limits.constraints(Linear, along):
+        # With what grows with the rate as at full speed, without it, and without friction: so all that lies between.
+        constants = [row.constant, row.constant + row.by_rate, row.constant + row.friction]
+        different = [constants[0], *(c for c in constants[1:] if (c != constants[0]).any())]
+        rows += [(row.by_u, row.by_x, constant) for constant in different]
     by_u, by_x, still = (np.concatenate(part, axis=-1) for part in zip(*rows, strict=True))
     return by_u, by_x, still
 
 
-def _disc(robot: Mechanism, first: Array, second: Array, limits: Limits) -> tuple[Array, Array] | None:
-    """The tool's acceleration over its cap, (n, 2, .) by u and by x; None where there is no cap."""
-    cap, point = limits.tool_acceleration, places(robot.pose_names)
-    return None if cap is None else (first[..., :point] / cap, second[..., :point] / cap)
-
-
-def _brake(knots: Array, rows: Rows, disc: tuple[Array, Array] | None) -> tuple[Array, Array]:
+def _brake(knots: Array, rows: Rows, discs: list[Disc]) -> tuple[Array, Array]:
     """Knots and pace (k,) of the braking, as far as it goes."""
     steps = np.diff(knots)
     x, tau, pace = 1.0, [knots[0]], [1.0]
@@ -102,8 +105,8 @@ def _brake(knots: Array, rows: Rows, disc: tuple[Array, Array] | None) -> tuple[
         ahead = np.array([0.0, 2.0 * step])[:, None]
         by_u, by_x, still = (part[k] for part in rows)
         least = _least(by_u + ahead * by_x, by_x * x + still)
-        if disc is not None:
-            least = max(least, _least_in_disc(disc[0][k] + ahead * disc[1][k], disc[1][k] * x))
+        for disc in discs:
+            least = max(least, _least_in_disc(disc.by_u[k] + ahead * disc.by_x[k], disc.by_x[k] * x))
         u = min(least, 0.0)
         if x + 2.0 * step * u <= 0.0:
             return np.array([*tau, tau[-1] - x / (2.0 * u)]), np.array([*pace, 0.0])

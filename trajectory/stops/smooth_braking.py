@@ -19,12 +19,11 @@ import numpy as np
 
 from kinematics import Array, Mechanism
 from trajectory.errors import LimitsExceeded, TimingFailed
-from trajectory.limits import Limits
+from trajectory.limits import Limits, uses
 from trajectory.motions import SAME, TimedMotion, TimeLaw, motion_of
 from trajectory.stops.braking import steps_of, with_knots
 from trajectory.stops.smooth_braking_rows import braking_rows
 from trajectory.stops.smooth_pace import INSTANTS, Pace, least_pace
-from trajectory.verification import uses
 
 COARSE = 50  # steps of the rest of the motion, to see about where braking ends
 STEPS = 100  # of the braking, at least
@@ -75,7 +74,7 @@ def _least(
     robot: Mechanism, timed: TimedMotion, near: Pace, limits: Limits, payload: float, margin: float
 ) -> Pace | None:
     """The pace on the knots of a guess."""
-    rows = braking_rows(robot, motion_of(robot, steps_of(timed, near.tau, INSTANTS), payload), limits, payload)
+    rows = braking_rows(robot, steps_of(timed, near.tau, INSTANTS), limits, payload)
     return least_pace(*rows, near, margin)
 
 
@@ -83,12 +82,12 @@ def _require_kept(robot: Mechanism, timed: TimedMotion, start: float, limits: Li
     """Raise LimitsExceeded where the motion is over a limit, or its acceleration jumps, at a knot after the start."""
     motion = motion_of(robot, timed.within(np.array([0.0, 1.0]))[1], payload)
     later = timed.times[1:] > start
-    found = {name: use.ratio[later] for name, use in uses(robot, motion, limits).items() if use.ratio is not None}
-    peaks = {name: float(ratio.max()) for name, ratio in found.items()}
+    used = uses(robot, motion, limits)
+    peaks = {limit.name: float(use.ratio[later].max()) for limit, use in used.items() if use.ratio is not None}
     acceleration = motion.joints.second
     jump = np.abs(acceleration[1:, 0] - acceleration[:-1, -1])[later[:-1]].max(initial=0.0)
     if jump > _ROUNDING * np.abs(acceleration).max():
-        peaks["joint jerk"] = math.inf
+        peaks |= {limit.name: math.inf for limit, use in used.items() if limit.jumps and use.ratio is not None}
     over = {f"{name} of the motion to be stopped": peak for name, peak in peaks.items() if not peak <= 1.0 + _ROUNDING}
     if over:
         raise LimitsExceeded(over, 1.0)

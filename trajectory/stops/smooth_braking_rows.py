@@ -21,10 +21,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics import Array, Mechanism, inverse_dynamics
-from trajectory.limits import Limits
-from trajectory.motions import Motion, torque_by_rate
-from trajectory.paths import places
+from kinematics import Array, Mechanism
+from trajectory.limits import Along, Disc, Limits, Linear, Sloped, Third
+from trajectory.motions import PoseMotion
+from trajectory.stops.braking import along_itself
 
 _CHORDS = 16  # of at most half a circle: they cut off less than 0.5 % of the cap
 _STEEPEST = 0.1  # margin by 1 - x
@@ -59,13 +59,16 @@ class LinearRows(NamedTuple):
     most: Array
 
 
-def braking_rows(robot: Mechanism, motion: Motion, limits: Limits, payload: float) -> tuple[Rows, JerkRows]:
+def braking_rows(robot: Mechanism, tool: PoseMotion, limits: Limits, payload: float) -> tuple[Rows, JerkRows]:
     """The rows at (n, j) instants of the motion to be stopped, j from end to end of each of its n intervals."""
-    jerk = limits.of_joints("jerk", motion.torque.shape[-1])
-    first, second, third = (v / jerk for v in motion.joints[1:])
-    rows = _rows(robot, motion, limits, payload)
+    along = along_itself(robot, tool, payload)
+    rows = _rows(limits, along)
     used = rows.by_x + rows.by_v + 1.0 - rows.most
     rows = rows._replace(by_x=rows.by_x + _highest_around(used) - used)
+    jerks = limits.constraints(Third, along)
+    first, second, third = (
+        np.concatenate(part, axis=-1) for part in zip(*((j.by_z, j.by_u / 3.0, j.by_x) for j in jerks), strict=True)
+    )
     return rows, JerkRows(first, second, -_highest_around(-third), _highest_around(third))
 
 
@@ -104,29 +107,18 @@ def tangent_rows(rows: Rows, jerk: JerkRows, near: Array, middle: Array, margin:
     return LinearRows(*(np.concatenate(part, axis=-1) for part in (by_x, by_b, by_c, most)))
 
 
-def _rows(robot: Mechanism, motion: Motion, limits: Limits, payload: float) -> Rows:
-    pose, first, second, _ = motion.tool
-    _, speed, joints_second, _ = motion.joints
-    count, none, one = speed.shape[-1], np.zeros_like(speed), np.ones_like(speed)
+def _rows(limits: Limits, along: Along) -> Rows:
+    speed = along.joints.first
+    none, one = np.zeros_like(speed), np.ones_like(speed)
     groups = [Rows(*np.zeros((4, *speed.shape[:-1], 0)))]
-    acceleration, torque, stall, fastest = (
-        limits.of_joints(name, count) for name in ("acceleration", "torque", "stall_torque", "no_load_speed")
-    )
-    along = torque_by_rate(robot, payload, pose, first, second)
-    inertia = inverse_dynamics(robot, payload, pose, first, second + first) - sum(along)
+    linear = limits.constraints(Linear, along)
     for sign in (1.0, -1.0):
-        if acceleration is not None:
-            groups.append(Rows(sign * joints_second / acceleration, -sign * speed / acceleration, none, one))
-        of_torque = sign * np.stack([along.quadratic, -inertia, along.linear, along.constant])
-        if torque is not None:
-            by_x, by_b, by_v, constant = of_torque / torque
-            groups.append(Rows(by_x, by_b, by_v, 1.0 - constant))
-        if stall is not None and fastest is not None:
-            by_x, by_b, by_v, constant = of_torque / stall
-            groups.append(Rows(by_x, by_b, by_v + np.abs(speed) / fastest, 1.0 - constant))
-    if (cap := limits.tool_acceleration) is not None:
-        point = places(robot.pose_names)
-        groups.append(_chords(first[..., :point] / cap, second[..., :point] / cap))
+        for row in linear:
+            slope = row.slope if isinstance(row, Sloped) else none
+            groups.append(
+                Rows(sign * row.by_x, -sign * row.by_u, sign * row.by_rate + slope, one - sign * row.constant)
+            )
+    groups += [_chords(disc.by_u, disc.by_x) for disc in limits.constraints(Disc, along)]
     return Rows(*(np.concatenate(part, axis=-1) for part in zip(*groups, strict=True)))
 
 

@@ -7,14 +7,14 @@ acceleration (`smooth_braking`), and else in the shortest way, with steps where 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
-from kinematics import Array, InvalidValue, Mechanism
+from kinematics import Array, InvalidValue, Mechanism, Value
 from trajectory.errors import LimitsExceeded, TimingFailed
-from trajectory.limits import Limits
+from trajectory.limits import LIMITS, Disc, Limits, Linear, Squared, Third
 from trajectory.motions import PacedMotion, TimedMotion, TimeLaw
 from trajectory.stops.braking import braking
 from trajectory.stops.smooth_braking import smooth_braking
@@ -22,11 +22,11 @@ from trajectory.verification import Verification, verify
 
 _MARGINS = (1e-3, 4e-3, 1e-2, 3e-2)  # of the limits: the first with which they are proved between the knots too
 _LATER = 2  # knots of the motion at which braking may start where it does not succeed at once
-_BRAKING = ("acceleration", "torque", "tool_acceleration", "jerk")
+_BRAKING = [limit for limit in LIMITS if limit.kind in (Linear, Disc, Third)]
 
 
 @dataclass(frozen=True, eq=False)
-class EmergencyStop:
+class EmergencyStop(Value):
     """A stop that was verified.
 
     Attributes:
@@ -70,11 +70,12 @@ def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: L
     """
     if not 0.0 < start < timed.duration:
         raise InvalidValue("start of an emergency stop", start, f"inside (0, {timed.duration:.6g}) s")
-    if all(getattr(limits, name) is None for name in _BRAKING):
-        raise InvalidValue("Limits for an emergency stop", limits.as_dict(), f"one of {', '.join(_BRAKING)}")
-    kept, before = replace(limits, rms_torque=None), timed.at(np.array(start))
+    if not any(limit.is_set(limits) for limit in _BRAKING):
+        names = ", ".join(limit.fields[0].name for limit in _BRAKING)
+        raise InvalidValue("Limits for an emergency stop", limits.as_dict(), f"one of {names}")
+    kept, before = limits.without(Squared), timed.at(np.array(start))
     why: list[LimitsExceeded | TimingFailed] = []
-    margins = (0.0,) if limits.jerk is None else _MARGINS
+    margins = _MARGINS if limits.has(Third) else (0.0,)
     later = timed.times[(timed.times > start) & (timed.times < timed.duration)][:_LATER]
     for passed, margin in product(range(later.size + 1), margins):
         cruise = np.append(start, later[:passed])
@@ -104,6 +105,8 @@ def _after(cruise: Array, pace: TimeLaw) -> TimeLaw:
 
 
 def _pace(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float, margin: float) -> TimeLaw:
-    if limits.jerk is None:
+    """The constraints that ask for more than their limit are left out: the motion itself would not keep them."""
+    limits = limits.less(*(limit for limit in limits if not limit.exact))
+    if not limits.has(Third):
         return braking(robot, timed, start, limits, payload)
     return smooth_braking(robot, timed, start, limits, payload, margin)

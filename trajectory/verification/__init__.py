@@ -1,6 +1,5 @@
 """Independent verification of a motion: it imports nothing from what made it."""
 
-from trajectory.verification.limit_usage import uses
 from trajectory.verification.path_certificate import PathCertificate, Way, certify_path, worst_of
 from trajectory.verification.sampling import integrals, parts_of
 from trajectory.verification.verification import Peak, Verification, verify
@@ -13,7 +12,6 @@ __all__ = [
     "certify_path",
     "integrals",
     "parts_of",
-    "uses",
     "verify",
     "worst_of",
 ]

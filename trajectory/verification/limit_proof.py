@@ -9,10 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from kinematics import Array, Mechanism
-from trajectory.limits import Limits
+from trajectory.limits import InstantLimit, Limit, Limits, Use, mean_squares, uses
 from trajectory.motions import TimedMotion, motion_of
 from trajectory.verification.enclosure import slack
-from trajectory.verification.limit_usage import uses
 
 _PARTS = 4000  # of the whole motion at first, about
 _CLOSE = 2e-5  # relative: by how much a bound may exceed the highest use seen
@@ -20,7 +19,6 @@ _LITTLE = 1e-6  # of a limit: no bound need be closer to what stands still
 _CUTS = 4  # of a part that is cut
 _ROUNDS = 6  # of cutting; what is still open then keeps its bound
 _SLACK = 1e-11  # relative: more than what evaluation in double arithmetic is off by
-_RMS = "rms torque"
 
 
 def proved_use(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float) -> dict[str, float]:
@@ -32,33 +30,37 @@ def proved_use(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: fl
         robot, timed, limits, payload: as for `verify`.
     """
     low, high = _parts(timed)
-    seen: dict[str, float] = {}
-    bounds: dict[str, float] = {}
-    squares = np.zeros(len(robot.actuator_names))
+    seen: dict[Limit, float] = {}
+    bounds: dict[Limit, float] = {}
+    means = [limit for limit in mean_squares() if limit.is_set(limits)]
+    squares = {limit: np.zeros(len(robot.actuator_names)) for limit in means}
     for round_ in range(_ROUNDS + 1):
         motion = motion_of(robot, timed.at(0.5 * low + 0.5 * high), payload)
         away = slack(robot, timed, payload, low, high)
-        least = {name: use.ratio for name, use in uses(robot, motion, limits).items() if use.ratio is not None}
-        most = {
-            name: use.ratio for name, use in uses(robot, motion, limits, away.motion).items() if use.ratio is not None
-        }
+        least, most = _ratios(uses(robot, motion, limits)), _ratios(uses(robot, motion, limits, away.motion))
         open_ = np.zeros(low.size, dtype=bool)
-        for name, ratio in least.items():
-            seen[name] = max(seen.get(name, 0.0), float(np.nan_to_num(ratio, nan=0.0).max()))
+        for limit, ratio in least.items():
+            seen[limit] = max(seen.get(limit, 0.0), float(np.nan_to_num(ratio, nan=0.0).max()))
             if round_ < _ROUNDS:
-                open_ |= ~(most[name] <= max(seen[name] * (1.0 + _CLOSE), _LITTLE)).all(axis=-1)
+                open_ |= ~(most[limit] <= max(seen[limit] * (1.0 + _CLOSE), _LITTLE)).all(axis=-1)
         closed = ~open_
-        for name, ratio in most.items():
+        for limit, ratio in most.items():
             highest = float(np.nan_to_num(ratio[closed], nan=np.inf).max(initial=0.0)) * (1.0 + _SLACK)
-            bounds[name] = max(bounds.get(name, 0.0), highest)
-        parts = (high - low, np.abs(motion.torque), away.motion.torque, away.mean_torque)
-        squares += _squares(*(part[closed] for part in parts))
+            bounds[limit] = max(bounds.get(limit, 0.0), highest)
+        for mean in means:
+            size, excess = np.abs(mean.quantity(motion)), mean.excess(away.motion, away.mean_torque)
+            squares[mean] += _squares(*(part[closed] for part in (high - low, size, *excess)))
         if closed.all():
             break
         low, high = _cut(low[open_], high[open_])
-    if (limit := limits.of_joints("rms_torque", squares.size)) is not None:
-        bounds[_RMS] = float((np.sqrt(squares / timed.duration) / limit).max())
-    return bounds
+    for mean, square in squares.items():
+        bounds[mean] = float((np.sqrt(square / timed.duration) / mean.most(limits, square.size)).max())
+    return {limit.name: bound for limit, bound in bounds.items()}
+
+
+def _ratios(used: dict[InstantLimit, Use]) -> dict[InstantLimit, Array]:
+    """Of what is limited."""
+    return {limit: use.ratio for limit, use in used.items() if use.ratio is not None}
 
 
 def _parts(timed: TimedMotion) -> tuple[Array, Array]:
@@ -80,10 +82,10 @@ def _cut(low: Array, high: Array) -> tuple[Array, Array]:
     return edges[:, :-1].ravel(), edges[:, 1:].ravel()
 
 
-def _squares(lengths: Array, torque: Array, away: Array, mean: Array) -> Array:
-    """(m,) upper bounds of the integral of the squared torque, from its size in the middle of each part.
+def _squares(lengths: Array, size: Array, most: Array, mean: Array) -> Array:
+    """(m,) upper bounds of the integral of a square, from the quantity's size in the middle of each part.
 
-    With e what is on top of that, the square's mean is tau^2 + 2 tau (mean of e) + the mean of e^2.
+    With e what is on top of that, the square's mean is size^2 + 2 size (mean of e) + the mean of e^2.
     """
-    found: Array = lengths @ (torque**2 + 2.0 * torque * mean + away**2)
+    found: Array = lengths @ (size**2 + 2.0 * size * mean + most**2)
     return found

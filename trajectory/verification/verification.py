@@ -16,11 +16,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics import Array, Mechanism, from_actuators, rounded_up
-from trajectory.limits import Limits
+from kinematics import Array, Mechanism, Value, from_actuators, rounded_up
+from trajectory.limits import Limits, MeanSquareLimit, Use, mean_squares, uses
 from trajectory.motions import Motion, PoseMotion, TimedMotion, motion_of
 from trajectory.verification.limit_proof import proved_use
-from trajectory.verification.limit_usage import Use, uses
 from trajectory.verification.sampling import integrals, settled_parts, way_of
 
 _SMOOTH = 1e-9  # of the largest q'', or of the duration at the jerk limit: a smaller jump of q'' is rounding
@@ -53,14 +52,13 @@ class Peak(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Verification:
+class Verification(Value):
     """What was measured, and what was proved.
 
     Attributes:
         law: name of the law.
         duration: of the motion [s].
-        peaks: of joint speed, joint acceleration, torque, tool speed, tool acceleration, joint jerk, rms torque; of
-            joint position and torque at speed where they are limited.
+        peaks: of every limited quantity, and of those that tell something without a limit, such as the torque.
         residuals: of the end poses [rad, or over the robot's size], of the end speeds over the largest, of the loop
             closure [rad, or over the robot's size]; how many samples are in another assembly mode; of the joints'
             integrals, over the largest speed and over the way of the joints.
@@ -144,11 +142,11 @@ def verify(
         before = PoseMotion(timed.ends[0], *np.zeros((3, timed.ends.shape[1])))
     peaks, notes = _peaks(robot, times, motion, motion_of(robot, before, payload), limits)
     peak = np.abs(motion.torque).max(axis=(0, 1))
-    rms = np.sqrt(integrals(times, motion.torque**2).sum(axis=0) / timed.duration)
+    rms = _root_mean_square(timed, times, motion.torque)
     found = Verification(
         law=timed.name,
         duration=timed.duration,
-        peaks=(*peaks, _rms_peak(robot, rms, limits.of_joints("rms_torque", rms.size))),
+        peaks=(*peaks, *(_rms_peak(robot, timed, times, motion, limits, mean) for mean in mean_squares())),
         residuals=_residuals(robot, timed, motion, before) | _integral_residuals(times, motion),
         reach=_least(robot.margin("reach", motion.tool.pose)),
         rms_torque=rms,
@@ -164,16 +162,17 @@ def _peaks(
 ) -> tuple[tuple[Peak, ...], tuple[str, ...]]:
     found = uses(robot, motion, limits)
     jump_time, jump = _jump(times, motion.joints.second, before.joints.second)
-    jerk = found["joint jerk"].limit
-    largest = max(np.abs(motion.joints.second).max(), 0.0 if jerk is None else times[-1, -1] * jerk.min())
-    if jump <= _SMOOTH * largest:
-        return tuple(_peak(robot, times, name, use) for name, use in found.items()), ()
-    del found["joint jerk"]
-    peaks = [_peak(robot, times, name, use) for name, use in found.items()]
-    if jerk is not None:
-        peaks.append(Peak("joint jerk", None, jump_time, math.inf, float(jerk.min()), math.inf))
-    return tuple(peaks), (
-        f"joint jerk left out: a joint acceleration jumps by {jump:.4g}, where the jerk is an impulse",
+    infinite = {limit: use.limit for limit, use in found.items() if limit.jumps}
+    least = [float(limit.min()) for limit in infinite.values() if limit is not None]
+    if jump <= _SMOOTH * max(np.abs(motion.joints.second).max(), *(times[-1, -1] * limit for limit in least), 0.0):
+        infinite = {}
+    peaks = [_peak(robot, times, limit.name, use) for limit, use in found.items() if limit not in infinite]
+    for limit, most in infinite.items():
+        if most is not None:
+            peaks.append(Peak(limit.name, None, jump_time, math.inf, float(most.min()), math.inf))
+    return tuple(peaks), tuple(
+        f"{limit.name} left out: a joint acceleration jumps by {jump:.4g}, where the jerk is an impulse"
+        for limit in infinite
     )
 
 
@@ -185,11 +184,20 @@ def _peak(robot: Mechanism, times: Array, quantity: str, use: Use) -> Peak:
     return Peak(quantity, joint, float(times[where[:-1]]), float(use.value[where]), bound, ratio)
 
 
-def _rms_peak(robot: Mechanism, rms: Array, limit: Array | None) -> Peak:
+def _root_mean_square(timed: TimedMotion, times: Array, values: Array) -> Array:
+    found: Array = np.sqrt(integrals(times, values**2).sum(axis=0) / timed.duration)
+    return found
+
+
+def _rms_peak(
+    robot: Mechanism, timed: TimedMotion, times: Array, motion: Motion, limits: Limits, mean: MeanSquareLimit
+) -> Peak:
+    rms = _root_mean_square(timed, times, mean.quantity(motion))
+    limit = mean.most(limits, rms.size)
     size = rms if limit is None else rms / limit
     joint = int(size.argmax())
     bound, ratio = (None, None) if limit is None else (float(limit[joint]), float(size[joint]))
-    return Peak("rms torque", robot.actuator_names[joint], None, float(rms[joint]), bound, ratio)
+    return Peak(mean.name, robot.actuator_names[joint], None, float(rms[joint]), bound, ratio)
 
 
 def _jump(times: Array, acceleration: Array, first: Array) -> tuple[float, float]:

@@ -13,7 +13,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.errors import InvalidGeometry, InvalidValue
+from kinematics.errors import InvalidField, InvalidGeometry, InvalidValue
 from kinematics.machine import TURN, GeometryRecord, InertiaRecord, Pair, Points, RodRanges, frame, length, numbers_of
 from kinematics.robots.gough_stewart.architecture_singularity import why_singular
 
@@ -162,7 +162,7 @@ class GoughStewartInertia(InertiaRecord):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.screw_lead == 0.0:
-            raise InvalidValue("GoughStewartInertia screw_lead", self.screw_lead, "> 0 m/turn")
+            raise InvalidField("GoughStewartInertia", "screw_lead", self.screw_lead, "> 0 m/turn")
 
 
 @dataclass(frozen=True)
@@ -186,7 +186,7 @@ class GoughStewartRanges(RodRanges):
             return
         rest = numbers_of(self.rest)
         if rest is None or rest.shape != (3,) or not np.isfinite(rest).all():
-            raise InvalidValue("GoughStewartRanges rest", self.rest, "three finite coordinates [m]")
+            raise InvalidField("GoughStewartRanges", "rest", self.rest, "three finite coordinates [m]")
 
 
 class SingularArchitecture(InvalidGeometry):

@@ -20,6 +20,7 @@ from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.model import FviBounds, Mechanism, Mode, Model, by_name
 from kinematics.robots.gough_stewart.forward import ForwardSolution, assembly_modes, matched_pose
 from kinematics.robots.gough_stewart.geometry import GoughStewartGeometry, GoughStewartInertia, GoughStewartRanges
+from kinematics.robots.gough_stewart.links import links
 from kinematics.robots.gough_stewart.six_legs import SixLegs
 
 _SCREW = ("x", "y", "z", "about x", "about y", "about z")
@@ -36,6 +37,7 @@ class GoughStewart(SixLegs):
     Ranges = GoughStewartRanges
     geometry: GoughStewartGeometry
     inertia: GoughStewartInertia
+    ranges: GoughStewartRanges
     joint_units = ("m",) * 6
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=2000.0, speed=0.3, force=500.0)
     margins = by_name(*STANDARD, PASSIVE_JOINT)
@@ -215,7 +217,7 @@ class GoughStewart(SixLegs):
     def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:
         """Universal joints on the base and spherical ones on the platform, mounted along the legs at `ranges.rest`."""
         rest = self.home if self.ranges.rest is None else (*self.ranges.rest, 0, 0, 0)
-        rest_pose, legs = ca.vertcat(*rest), self.legs(pose, g)
+        rest_pose, legs = ca.SX(ca.DM(rest)), self.legs(pose, g)
         rests = self.legs(rest_pose, g)
         axes = rests @ ca.diag(1 / _lengths(rests))
         turned = self.rotation(pose) @ (self.rotation(rest_pose).T @ axes)
@@ -224,6 +226,8 @@ class GoughStewart(SixLegs):
             for end, held in enumerate((axes, turned))
             for i in range(6)
         ]
+
+    link_tree = links
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Screws driven by the joints; rods, platform and payload carried by the pose."""

@@ -21,6 +21,7 @@ from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import gaps, real_roots, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, in_aspect, joined_to_home, polished
 from kinematics.robots.heli4.forward import Plates, plates
+from kinematics.robots.heli4.links import links
 from kinematics.robots.shared import (
     INTERNAL_DETERMINANT,
     ArmInertia,
@@ -163,6 +164,8 @@ class Heli4(RotaryLimbs, RodLevel):
         lines = ca.cross(normals[0], normals[1]), ca.cross(normals[2], normals[3])
         result: ca.SX = ca.cross(*lines)[2] / model.g.rod_length**4
         return result
+
+    link_tree = links
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms with their drives, rods, plates, payload and tool."""

@@ -31,6 +31,7 @@ from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.model import Build, FviBounds, Mechanism, Mode, Model, by_name
 from kinematics.robots.peppermill import limbs
 from kinematics.robots.peppermill.geometry import PeppermillGeometry, PeppermillInertia, PeppermillRanges
+from kinematics.robots.peppermill.links import links
 
 _E_Z = ca.DM([0, 0, 1])
 
@@ -205,6 +206,8 @@ class Peppermill(Mechanism):
         proximal = limbs.in_space(limbs.Plane(ca.cos(theta), ca.sin(theta))) @ ca.diag(g.proximal_lengths)
         nuts = ca.repmat(pose[:3], 1, 2) + _E_Z @ (g.pitches.T / TURN * pose[3])
         return origins, carriages, carriages + proximal, nuts
+
+    link_tree = links
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Motors, carriages, proximal and distal links, nuts, platform, payload."""

@@ -10,6 +10,7 @@ from kinematics.arrays import Array
 from studies.building.load import load_study
 from studies.building.objects import limits_of, path_of, pose_bounds_of, robot_of
 from studies.study_file.locate import study_path
+from studies.study_file.toml_file import read_toml
 from trajectory import AdeptCycle, Limits, Path
 from trajectory.paths.pose_bounds import PoseBounds
 
@@ -55,7 +56,7 @@ def others() -> list[Case]:
 
 
 def _of_study(study: str, name: str) -> Case:
-    found = load_study(study_path(study))
+    found = load_study(read_toml(study_path(study)))
     asked = found.trajectory
     assert asked is not None
     robot = robot_of(found)

@@ -10,12 +10,12 @@ from dataclasses import dataclass, replace
 
 from kinematics import LinkwrightError
 from tests.bench.timing.cases import Case
-from trajectory import Limits, LimitsExceeded, TimedMotion, Verification, repair, verify
+from trajectory import LIMITS, Limits, LimitsExceeded, TimedMotion, Verification, repair, verify
 from trajectory.cycles.least_stretch import REPAIRABLE
 
 REPEATS = 3
 LONG = 5.0  # seconds: what takes longer is repeated once
-_POWERS = {"joint speed": 1, "joint acceleration": 2, "torque": 2, "joint jerk": 3}  # about, for the torque
+_POWERS = {limit.name: limit.pace_power for limit in LIMITS}  # about, for the torque
 _JUST_BELOW = 0.999  # how far the pace is taken past the guess, so that the repair finds the exact one
 _NEAR = 0.999  # a motion that uses its limits so far is left as it is
 _ROUNDS = 20

@@ -10,7 +10,7 @@ from design.certificates.box_tree import PROVED, leaves, root
 from design.certificates.symmetry import one_side
 from design.claims import to_show
 from kinematics import Array, ClaimSymbols, Mechanism
-from kinematics.evaluation.program import Program, replay
+from kinematics.evaluation.program import Program, run_through
 from tests.arb import OPERATIONS, arb, ball
 
 
@@ -53,7 +53,7 @@ class Auditor:
 
     def holds_at(self, pose: Array) -> bool:
         """Whether every component of the margin, as the mechanism defines it, reaches the bound at a pose."""
-        values = replay(self._margin, [*(arb(float(v)) for v in pose), *self._fixed], OPERATIONS)
+        values = run_through(self._margin, [*(arb(float(v)) for v in pose), *self._fixed], OPERATIONS)
         return all(bool(arb(v) >= self.certificate.at_least) for v in values)
 
     def proves(self, low: Array, high: Array, depth: int = 12) -> bool:
@@ -62,9 +62,9 @@ class Auditor:
         scaling = self._scaling(middle)
         tail = [*scaling, *self._fixed, *map(arb, self._numbers)]
         whole = [ball(a, b) for a, b in zip(low, high, strict=True)]
-        values = replay(self._claims, [*(arb(float(v)) for v in middle), *tail], OPERATIONS)
-        natural = replay(self._claims, [*whole, *tail], OPERATIONS)
-        slopes = replay(self._gradient, [*whole, *tail], OPERATIONS)
+        values = run_through(self._claims, [*(arb(float(v)) for v in middle), *tail], OPERATIONS)
+        natural = run_through(self._claims, [*whole, *tail], OPERATIONS)
+        slopes = run_through(self._gradient, [*whole, *tail], OPERATIONS)
         n = len(middle)
         if all(
             bool(arb(natural[c]) >= 0)

@@ -9,8 +9,13 @@ from kinematics import (
     DriveTrain,
     GoughStewart,
     Heli4,
+    Hexa,
     InvalidValue,
+    Par4,
     Peppermill,
+    Planar3PRR,
+    Planar3RPR,
+    Planar3RRR,
     Redundant3T1R,
     UnreachablePose,
     inverse_dynamics,
@@ -60,6 +65,21 @@ def test_open_trees_inertia_and_bias_projected_by_our_jacobians_give_our_torques
         wrench = tree.wrench(pose, velocity, acceleration)
         found = robot.actuator_jacobian(pose).T @ torque
         assert np.abs(found - wrench).max() < 1e-6 * np.abs(wrench).max()
+
+
+@pytest.mark.parametrize("kind", [Delta, Hexa, Planar3PRR, Planar3RRR], ids=lambda kind: kind.__name__)
+@RODS
+def test_links_that_follow_from_the_bodies_close_in_mujoco_and_need_our_torques(kind, uniform):
+    robot = robot_of(kind, uniform)
+    rng, n = np.random.default_rng(5), len(robot.pose_names)
+    pose = robot.home + rng.uniform(-0.02, 0.02, (6, n)) * robot.geometry.size
+    motion = pose, rng.normal(size=pose.shape), rng.normal(size=pose.shape) * 20
+    tree = OpenTree(robot, pose[0], PAYLOAD)
+    torques = inverse_dynamics(robot, PAYLOAD, *motion)
+    for k in range(len(pose)):
+        assert np.abs(tree.loop_errors(pose[k])).max() < 1e-14
+        wrench = tree.wrench(*(part[k] for part in motion))
+        assert np.abs(robot.actuator_jacobian(pose[k]).T @ torques[k] - wrench).max() < 1e-6 * np.abs(wrench).max()
 
 
 @pytest.mark.parametrize("kind", [Heli4, Redundant3T1R], ids=lambda kind: kind.__name__)
@@ -145,8 +165,10 @@ def test_friction_of_the_drives_is_mujocos(kind):
 
 
 def test_what_cannot_be_exported_is_named():
-    with pytest.raises(InvalidValue, match="Delta; expected one of Heli4, Redundant3T1R, Peppermill, GoughStewart"):
-        mjcf(Delta(), Delta().home)
+    with pytest.raises(InvalidValue, match=r"half 1, which moves otherwise; expected .* the hook `link_tree`"):
+        mjcf(Par4(), Par4().home)
+    with pytest.raises(InvalidValue, match="no link that q1 moves"):
+        mjcf(Planar3RPR(), Planar3RPR().home)
     with pytest.raises(UnreachablePose, match="limb"):
         mjcf(Heli4(), (0.0, 0.0, -3.0, 0.0))
     with pytest.raises(InvalidValue, match="payload: found -1"):

@@ -23,6 +23,7 @@ from studies.stages.proofs import question_of
 from studies.study_file.locate import FOLDER
 from studies.study_file.questions import design_question, digest_of
 from studies.study_file.study import Study
+from studies.study_file.toml_file import read_toml
 from studies.study_file.units import Dimension, Key
 from tests.studies.command_line import SMALL, SmallRun, copy_of, linkwright
 from trajectory import read_setpoints
@@ -54,7 +55,7 @@ def fake_mechanism() -> None:
 
 def study_of(folder: Path, text: str) -> Study:
     (folder / "study.toml").write_text(text)
-    return load_study(folder / "study.toml")
+    return load_study(read_toml(folder / "study.toml"))
 
 
 def test_a_robot_has_its_studys_masses_drives_and_ranges(tmp_path: Path) -> None:
@@ -164,7 +165,10 @@ def test_a_required_room_that_the_ranges_do_not_leave_stops_a_run(tmp_path: Path
 @pytest.mark.parametrize("name", ["heli4", "gough_stewart"])
 def test_a_committed_answer_proves_the_room_that_its_ranges_leave(name: str) -> None:
     """That each one stands is `linkwright check`'s to say."""
-    study, proved = load_study(FOLDER / name / "study.toml"), read_optimum(FOLDER / name / "optimum.toml").certificates
+    study, proved = (
+        load_study(read_toml(FOLDER / name / "study.toml")),
+        read_optimum(FOLDER / name / "optimum.toml").certificates,
+    )
     required = {requirement.margin: requirement.at_least for requirement in study.requirement}
     assert study.ranges
     for margin in ("joint_travel", "passive_joint"):

@@ -16,6 +16,7 @@ from studies.building.load import load_study
 from studies.building.objects import limits_of, path_of, region_of, robot_of
 from studies.errors import RequirementFailed
 from studies.stages.cycle_stage import time_cycle
+from studies.study_file.toml_file import read_toml
 from tests.studies.command_line import SMALL
 from trajectory import AdeptCycle, PoseSpline, RoundedPath, free_motion
 from trajectory.motions.pose_spline import InTime
@@ -89,7 +90,7 @@ def test_the_free_law_is_given_the_region_and_a_motion_that_leaves_it_is_refused
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "study.toml").write_text(FREE)
-    study = load_study(tmp_path / "study.toml")
+    study = load_study(read_toml(tmp_path / "study.toml"))
     assert study.trajectory is not None
     robot, region, given = robot_of(study), region_of(study), []
     path, limits = path_of(study.trajectory, NAMES), limits_of(study.trajectory.limits)

@@ -19,6 +19,7 @@ from studies.results.output_folder import Written
 from studies.stages.map_options import InvalidOption, MapRequest, map_request
 from studies.stages.map_stage import run_map
 from studies.study_file.locate import study_path
+from studies.study_file.toml_file import read_toml
 from tests.studies.command_line import linkwright
 
 CORNER = ("--over", "y_mm=200:300", "--over", "z=0.3:0.6")
@@ -30,11 +31,11 @@ def fake_mechanism() -> None:
 
 
 def redundant(**options: Any) -> MapRequest:
-    return map_request(load_study(study_path("redundant_3t1r")), Redundant3T1R(), **options)
+    return map_request(load_study(read_toml(study_path("redundant_3t1r"))), Redundant3T1R(), **options)
 
 
 def heli(**options: Any) -> MapRequest:
-    return map_request(load_study(study_path("heli4")), Heli4(), **options)
+    return map_request(load_study(read_toml(study_path("heli4"))), Heli4(), **options)
 
 
 def test_picture_numbers_and_json_tell_the_same(tmp_path: Path) -> None:

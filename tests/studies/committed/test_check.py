@@ -24,6 +24,7 @@ from studies.stages.pipeline import run
 from studies.stages.proofs import Claim, question_of
 from studies.study_file.locate import study_names
 from tests.sizes import few_or_many
+from studies.study_file.toml_file import read_toml
 from tests.studies.command_line import SMALL, SmallRun, copy_of, linkwright
 from trajectory import write_files
 
@@ -70,7 +71,7 @@ def test_no_entry_of_an_optimum_can_be_changed_or_removed_unnoticed(
     """Each geometry that differs is computed anew, so only the first `count` are."""
     file = copy_of(small_run[0], tmp_path)
     original = tomllib.loads(file.read_text())
-    study = load_study(tmp_path / "study.toml")
+    study = load_study(read_toml(tmp_path / "study.toml"))
     outcome = run(study, read_optimum(file).robot(study), lambda _: None, compare_cycles=False)
     assert all(
         row.holds for row in compare(read_optimum(file), outcome) + proofs(read_optimum(file), outcome, tmp_path)
@@ -91,7 +92,7 @@ def test_no_entry_of_an_optimum_can_be_changed_or_removed_unnoticed(
         if not same and (count := count - 1) < 0:
             continue
         if not same:
-            rows = check_study(tmp_path / "study.toml")
+            rows = check_study(read_toml(tmp_path / "study.toml"))
         elif path[0] == "certificate":
             rows = proofs(claimed, outcome, tmp_path)
         else:
@@ -102,14 +103,14 @@ def test_no_entry_of_an_optimum_can_be_changed_or_removed_unnoticed(
 def test_an_invented_figure_is_noticed(small_run: SmallRun, tmp_path: Path) -> None:
     file = copy_of(small_run[0], tmp_path)
     file.write_text(file.read_text().replace("[figures]\n", "[figures]\nJ_q = 0.99\n"))
-    failed = [row.what for row in check_study(tmp_path / "study.toml") if not row.holds]
+    failed = [row.what for row in check_study(read_toml(tmp_path / "study.toml")) if not row.holds]
     assert failed == ["figures.J_q"]
 
 
 def test_a_best_bound_that_says_next_to_nothing_is_noticed(small_run: SmallRun, tmp_path: Path) -> None:
     """Sound in itself, entered in the optimum and replayed: only its worth is gone."""
     file = copy_of(small_run[0], tmp_path)
-    study, optimum = load_study(tmp_path / "study.toml"), read_optimum(file)
+    study, optimum = load_study(read_toml(tmp_path / "study.toml")), read_optimum(file)
     weak = question_of(study, optimum.robot(study)).prove(Claim("J_q", 0.01, best=False), None, None, lambda _: None)
     assert weak.certificate.status == "proved"
     write_files(tmp_path, proof_files([weak]))
@@ -168,7 +169,7 @@ def test_another_payload_leaves_the_geometry_its_claims_and_check_names_the_key(
     copy_of(small_run[0], tmp_path)
     (tmp_path / "study.toml").write_text(SMALL.replace("payload = 0.5", "payload = 0.25"))
     assert linkwright("trajectory", tmp_path).returncode == 0
-    rows = check_study(tmp_path / "study.toml")
+    rows = check_study(read_toml(tmp_path / "study.toml"))
     assert [(row.what, row.expected, row.found) for row in rows if not row.holds][:-1] == [
         ("cycle question: trajectory.cycle.payload", "0.5", "0.25")
     ]
@@ -180,7 +181,7 @@ def test_masses_belong_to_the_cycle_and_a_title_to_neither_question(small_run: S
     copy_of(small_run[0], tmp_path)
     plain, other = "Two variables", "Another title"
     (tmp_path / "study.toml").write_text(SMALL.replace(plain, other) + "[trajectory.drive]\nincrements = 4096\n")
-    assert all(row.holds for row in check_study(tmp_path / "study.toml"))
+    assert all(row.holds for row in check_study(read_toml(tmp_path / "study.toml")))
     (tmp_path / "study.toml").write_text(SMALL + "[inertia]\narm_mass = 0.5\n")
-    failed = [row.what for row in check_study(tmp_path / "study.toml") if not row.holds]
+    failed = [row.what for row in check_study(read_toml(tmp_path / "study.toml")) if not row.holds]
     assert failed == ["cycle question: inertia.arm_mass", "answers the study's cycle question"]

@@ -23,6 +23,7 @@ from studies.errors import RequirementFailed
 from studies.stages.claim_rows import Row
 from studies.stages.pipeline import Outcome, run
 from studies.stages.proofs import question_of
+from studies.study_file.toml_file import read_toml
 from tests.studies.command_line import SMALL, SmallRun, copy_of, linkwright, linkwright_apart
 
 GIVEN = re.sub(r"\[optimise\].*?(?=\[\[requirement)", "", SMALL, flags=re.DOTALL).partition("[trajectory]")[0]
@@ -36,7 +37,7 @@ def fake_mechanism() -> None:
 @pytest.fixture(scope="module")
 def outcome(small_run: SmallRun) -> Outcome:
     """What the geometry of the small run does, but for its cycle."""
-    study = load_study(small_run[0] / "study.toml")
+    study = load_study(read_toml(small_run[0] / "study.toml"))
     robot = read_optimum(small_run[0] / "optimum.toml").robot(study)
     return run(study.model_copy(update={"trajectory": None}), robot, lambda _: None)
 
@@ -156,7 +157,7 @@ def test_a_certificate_that_cannot_be_read_is_wrong_input(
 
 def test_another_studys_certificate_exits_1_with_its_row(small_run: SmallRun, tmp_path: Path) -> None:
     copy_of(small_run[0], tmp_path)
-    question = question_of(load_study(small_run[0] / "study.toml"), Heli4())  # the prototype's
+    question = question_of(load_study(read_toml(small_run[0] / "study.toml")), Heli4())  # the prototype's
     (claim,) = question.only("internal_determinant", None)
     other = question.prove(claim, None, None, lambda _: None).certificate
     assert other.status == "proved"

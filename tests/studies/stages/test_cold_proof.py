@@ -15,8 +15,9 @@ import time
 from pathlib import Path
 from studies.certify import prove_claims, question_of
 from studies.load import load_study
+from studies.study_file.toml_file import read_toml
 from studies.setup import robot_of
-study = load_study(Path("studies/heli4/study.toml"))
+study = load_study(read_toml(Path("studies/heli4/study.toml")))
 question = question_of(study, robot_of(study))
 claims = [claim for claim in question.claims() if claim.margin == "J_q"]
 worst = {"J_q": question.worst("J_q")}

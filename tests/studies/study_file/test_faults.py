@@ -11,6 +11,7 @@ import kinematics
 from kinematics import LinkwrightError
 from studies.building.load import load_study
 from studies.errors import StudyError
+from studies.study_file.toml_file import read_toml
 
 Write = Callable[[str], Path]
 
@@ -67,7 +68,12 @@ FAULTS = {
     "one passive angle": ("[50, 60]", "50", "ranges.passive_deg", "found 50; expected two angles above 0"),
     "more than half a turn": ("[50, 60]", "[50, 181]", "ranges.passive_deg", "at most half a turn"),
     "no rest": ("passive_deg", "rest_mm", "ranges.rest_mm", "unknown key"),
-    "mechanism": ('"Fake"', '"Fale"', "mechanism", 'found "Fale"; expected one of Fake (did you mean Fake?)'),
+    "mechanism": (
+        '"Fake"',
+        '"Fale"',
+        "mechanism",
+        'expected "module:Class", or one of Fake (did you mean Fake?)',
+    ),
     "margin": ('"J_q"', '"J_Q"', "requirement.margin", "J_q, J_x, fvi, reach (did you mean J_q?)"),
     "variable": ("pitch_mm", "pich_mm", "optimise.variables.pich_mm", "did you mean pitch_mm?"),
     "bounds": ("[20, 120]", "[120, 20]", "optimise.variables.pitch_mm", "expected low < high, 0 left out (mm"),
@@ -150,7 +156,7 @@ FAULTS = {
 
 def refused(path: Path) -> StudyError:
     with pytest.raises(StudyError) as caught:
-        load_study(path)
+        load_study(read_toml(path))
     return caught.value
 
 
@@ -162,7 +168,7 @@ def test_a_fault_names_file_key_line_and_what_was_expected(
     assert found
     path = write(before + new + after)
     error = refused(path)
-    [problem] = [problem for problem in error.problems if problem.key == key]
+    [problem] = [problem for problem in error.faults if problem.key == key]
     assert (problem.file, problem.line) == (path, (before + new).count("\n") + 1)
     assert str(problem).startswith(f"{path}:{problem.line}: {key}: found ")
     assert says in str(problem)
@@ -183,17 +189,17 @@ def test_a_missing_key_is_reported_at_its_table(
 ) -> None:
     error = refused(write(minimal_text.replace(left_out, "")))
     assert (error.key, error.line, error.found) == (key, line, "nothing")
-    assert len(error.problems) == 1
+    assert len(error.faults) == 1
 
 
 def test_a_region_without_keys_lacks_its_kind(write: Write, minimal_text: str) -> None:
     error = refused(write(minimal_text.partition("kind")[0]))
-    assert [(problem.key, problem.line) for problem in error.problems] == [("region.kind", 3)]
+    assert [(problem.key, problem.line) for problem in error.faults] == [("region.kind", 3)]
 
 
 def test_a_missing_table_is_reported(write: Write, minimal_text: str) -> None:
     with pytest.raises(StudyError, match="region: found nothing; expected a table"):
-        load_study(write(minimal_text.partition("[region]")[0]))
+        load_study(read_toml(write(minimal_text.partition("[region]")[0])))
 
 
 @pytest.mark.parametrize(
@@ -213,7 +219,7 @@ def test_a_missing_table_is_reported(write: Write, minimal_text: str) -> None:
 )
 def test_what_should_be_a_table_is_told(write: Write, minimal_text: str, text: str, key: str, says: str) -> None:
     error = refused(write(minimal_text + text))
-    [problem] = [problem for problem in error.problems if problem.key == key]
+    [problem] = [problem for problem in error.faults if problem.key == key]
     assert says in str(problem)
 
 
@@ -226,12 +232,12 @@ def test_a_region_that_is_no_table_is_told(write: Write, minimal_text: str, regi
 
 def test_a_box_may_not_name_a_coordinate_that_the_mechanism_lacks(write: Write, minimal_text: str) -> None:
     with pytest.raises(StudyError, match=r":9: region\.roll: found an unknown key; expected one of"):
-        load_study(write(minimal_text + "roll = 0\n"))
+        load_study(read_toml(write(minimal_text + "roll = 0\n")))
 
 
 def test_a_misspelt_key_is_not_reported_as_missing_too(write: Write, study_text: str) -> None:
     error = refused(write(study_text.replace("radius =", "radus =").replace("lift_mm", "lift_inch")))
-    assert [problem.key for problem in error.problems] == [
+    assert [problem.key for problem in error.faults] == [
         "region.radus",
         "trajectory.cycle.lift_inch",
     ]
@@ -239,7 +245,7 @@ def test_a_misspelt_key_is_not_reported_as_missing_too(write: Write, study_text:
 
 def test_a_key_and_its_misspelling_are_both_judged(write: Write, study_text: str) -> None:
     error = refused(write(study_text.replace("grid = 2000", "grid = 10\ngridd = 10")))
-    assert [problem.key for problem in error.problems] == ["trajectory.grid", "trajectory.gridd"]
+    assert [problem.key for problem in error.faults] == ["trajectory.grid", "trajectory.gridd"]
 
 
 def test_all_faults_are_reported_one_a_line_in_the_files_order(write: Write, study_text: str) -> None:
@@ -259,7 +265,7 @@ def test_all_faults_are_reported_one_a_line_in_the_files_order(write: Write, stu
 
 def test_an_unknown_mechanism_does_not_hide_other_faults(write: Write, study_text: str) -> None:
     error = refused(write(study_text.replace('"Fake"', '"Nope"').replace("grid = 2000", "grid = 1")))
-    assert [problem.key for problem in error.problems] == ["mechanism", "trajectory.grid"]
+    assert [problem.key for problem in error.faults] == ["mechanism", "trajectory.grid"]
 
 
 def test_the_second_row_of_an_array_of_tables_is_told_by_its_line(write: Write, minimal_text: str) -> None:
@@ -284,13 +290,13 @@ def test_a_screw_may_turn_further_than_once(write: Write, minimal_text: str, mon
     text = minimal_text.replace("theta_deg = 90", "theta_deg = [-360, 360]")
     path = write(text)
     with pytest.raises(StudyError, match="at most a turn apart"):
-        load_study(path)
+        load_study(read_toml(path))
     monkeypatch.setattr(kinematics.MECHANISMS["Fake"], "counts_turns", True)
-    assert load_study(path).region.coordinates["theta"] == pytest.approx((-2 * math.pi, 2 * math.pi))
+    assert load_study(read_toml(path)).region.coordinates["theta"] == pytest.approx((-2 * math.pi, 2 * math.pi))
 
 
 def test_an_entry_of_a_list_of_bounds_may_be_fixed(write: Write, study_text: str) -> None:
     bounds = "azimuths_deg = [[0, 0], [170, 190], [90, 90], [270, 270]]"
-    found = load_study(write(study_text.replace("pitch_mm = [20, 120]", bounds))).optimise
+    found = load_study(read_toml(write(study_text.replace("pitch_mm = [20, 120]", bounds)))).optimise
     assert found is not None
     assert found.variables["azimuths"][2] == (math.pi / 2, math.pi / 2)  # type: ignore[index]

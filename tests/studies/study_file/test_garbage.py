@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from studies.building.load import load_study
 from studies.errors import StudyError
 from studies.study_file.study import Study
+from studies.study_file.toml_file import read_toml
 
 Write = Callable[[str], Path]
 
@@ -18,10 +19,10 @@ def load_or_fault(path: Path) -> None:
     """Reads `path`; any exception but a StudyError escapes, as does a message with a stray line."""
     with suppress(StudyError):
         try:
-            assert isinstance(load_study(path), Study)
+            assert isinstance(load_study(read_toml(path)), Study)
         except StudyError as error:
             lines = str(error).split("\n")
-            if len(lines) != len(error.problems) or not all(line.startswith(str(path)) for line in lines):
+            if len(lines) != len(error.faults) or not all(line.startswith(str(path)) for line in lines):
                 raise AssertionError(lines) from error
             raise
 

@@ -12,6 +12,7 @@ from studies.building.load import load_study
 from studies.building.objects import path_of, robot_of
 from studies.errors import StudyError
 from studies.stages.cycle_stage import time_cycle
+from studies.study_file.toml_file import read_toml
 from trajectory import AdeptCycle, RoundedPath, WaypointFileError
 
 HEAD = """\
@@ -64,7 +65,7 @@ def written(folder: Path, text: str, kind: tuple[str, str] = HELI4) -> Path:
 
 
 def path_in(folder: Path, text: str, kind: tuple[str, str] = HELI4) -> AdeptCycle | RoundedPath:
-    study = load_study(written(folder, text, kind))
+    study = load_study(read_toml(written(folder, text, kind)))
     assert study.trajectory is not None
     names = tuple(study.region.coordinates)
     return path_of(study.trajectory, names)  # type: ignore[return-value]
@@ -84,7 +85,7 @@ def test_pick_and_place_with_lifts_of_their_own(tmp_path: Path) -> None:
 
 
 def test_the_payload_back_is_that_of_the_way_back_alone(tmp_path: Path) -> None:
-    study = load_study(written(tmp_path, CYCLE + 'size = "25/305/25"\npayload_back = 0.0\n'))
+    study = load_study(read_toml(written(tmp_path, CYCLE + 'size = "25/305/25"\npayload_back = 0.0\n')))
     assert study.trajectory is not None
     cycle = time_cycle(study, robot_of(study)).cycle
     assert [{p.payload for p in way} for way in (cycle.there, cycle.back)] == [{1.0}, {0.0}]
@@ -112,13 +113,13 @@ def test_the_waypoints_belong_to_the_digest(tmp_path: Path) -> None:
     digests = []
     for height in (-0.7, -0.71):
         (tmp_path / "way.csv").write_text(f"x,y,z,theta\n0,0,-0.8,0\n0,0,{height},1\n")
-        study = load_study(written(tmp_path, '[trajectory.path]\nfile = "way.csv"\npayload = 1.0\n'))
+        study = load_study(read_toml(written(tmp_path, '[trajectory.path]\nfile = "way.csv"\npayload = 1.0\n')))
         digests.append(study.digest)
     assert digests[0] != digests[1]
 
 
 def test_a_study_s_waypoints_are_timed_with_a_stop_at_the_corner_without_a_blend(tmp_path: Path) -> None:
-    study = load_study(written(tmp_path, ROWS.replace("blend_mm = 30\n", "")))
+    study = load_study(read_toml(written(tmp_path, ROWS.replace("blend_mm = 30\n", ""))))
     assert study.trajectory is not None
     timing = time_cycle(study, robot_of(study))
     assert [len(way) for way in (timing.cycle.there, timing.cycle.back)] == [2, 2]
@@ -132,7 +133,7 @@ def test_a_study_s_waypoints_are_timed_with_a_stop_at_the_corner_without_a_blend
 def test_a_way_that_ends_where_it_starts_is_a_closed_cycle_and_no_half(tmp_path: Path) -> None:
     corners = ((-0.05, -0.8), (0.05, -0.8), (-0.05, -0.8))
     rows = "".join(f"[[trajectory.path.waypoint]]\nx = {x}\ny = 0\nz = {z}\ntheta = 0\n" for x, z in corners)
-    study = load_study(written(tmp_path, f"[trajectory.path]\npayload = 1.0\n{rows}"))
+    study = load_study(read_toml(written(tmp_path, f"[trajectory.path]\npayload = 1.0\n{rows}")))
     timing = time_cycle(study, robot_of(study))
     figures = timing.figures()
     assert "half_cycle" not in figures
@@ -180,8 +181,8 @@ def test_a_fault_is_told_with_its_key(
     tmp_path: Path, text: str, kind: tuple[str, str], key: str, expected: str
 ) -> None:
     with pytest.raises(StudyError) as caught:
-        load_study(written(tmp_path, text, kind))
-    problems = [p for p in caught.value.problems if key in p.key]
+        load_study(read_toml(written(tmp_path, text, kind)))
+    problems = [p for p in caught.value.faults if key in p.key]
     assert problems, str(caught.value)
     assert expected in problems[0].expected
     assert problems[0].line is not None
@@ -193,27 +194,27 @@ def test_what_the_geometry_as_a_whole_refuses_is_told_at_its_key(tmp_path: Path)
     text = f'title = "-"\nmechanism = "GoughStewart"\n[geometry]\nE = {frame}\n[region]\nkind = "box"\n{region}'
     (tmp_path / "study.toml").write_text(text)
     with pytest.raises(StudyError, match=r"study\.toml:4: geometry\.E: found .* expected a rotation and a translation"):
-        load_study(tmp_path / "study.toml")
+        load_study(read_toml(tmp_path / "study.toml"))
 
 
 @pytest.mark.parametrize(("name", "found"), [("none.csv", "no such file"), ("study.toml", "no CSV file")])
 def test_a_file_of_waypoints_that_cannot_be_is_told_at_its_key(tmp_path: Path, name: str, found: str) -> None:
     with pytest.raises(StudyError, match=rf'trajectory\.path\.file: found "{name}", {found}; expected a \.csv file'):
-        load_study(written(tmp_path, f'[trajectory.path]\nfile = "{name}"\npayload = 1.0\n'))
+        load_study(read_toml(written(tmp_path, f'[trajectory.path]\nfile = "{name}"\npayload = 1.0\n')))
 
 
 def test_a_blend_that_does_not_fit_is_told_as_the_study_spells_it(tmp_path: Path) -> None:
     with pytest.raises(StudyError, match=r"path\.waypoint: found blend_mm = 101; expected"):
-        load_study(written(tmp_path, ROWS.replace("blend_mm = 30", "blend_mm = 101")))
+        load_study(read_toml(written(tmp_path, ROWS.replace("blend_mm = 30", "blend_mm = 101"))))
 
 
 def test_an_unknown_mechanism_is_told_without_faults_in_its_waypoints(tmp_path: Path) -> None:
     with pytest.raises(StudyError) as caught:
-        load_study(written(tmp_path, ROWS, ("Heli5", SCHOENFLIES)))
-    assert [p.key for p in caught.value.problems] == ["mechanism"]
+        load_study(read_toml(written(tmp_path, ROWS, ("Heli5", SCHOENFLIES))))
+    assert [p.key for p in caught.value.faults] == ["mechanism"]
 
 
 def test_a_fault_in_the_file_of_waypoints_is_told_with_line_and_column(tmp_path: Path) -> None:
     (tmp_path / "way.csv").write_text("x,y,z,theta\n0,0,-0.8,0\n0,0,nan,1\n")
     with pytest.raises(WaypointFileError, match=r"way.csv, line 3, column z: found nan"):
-        load_study(written(tmp_path, '[trajectory.path]\nfile = "way.csv"\npayload = 1.0\n'))
+        load_study(read_toml(written(tmp_path, '[trajectory.path]\nfile = "way.csv"\npayload = 1.0\n')))

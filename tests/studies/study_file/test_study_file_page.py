@@ -10,6 +10,7 @@ import pytest
 from studies.building.load import load_study
 from studies.building.objects import path_of, robot_of
 from studies.stages.cycle_stage import time_cycle
+from studies.study_file.toml_file import read_toml
 from tests.bench.study_keys import BY, NAME, PAGE, tables
 
 TEXT = PAGE.read_text()
@@ -38,7 +39,7 @@ def test_the_example_is_timed_and_its_waypoints_may_stand_in_a_file(tmp_path: Pa
     paths = []
     for text in (STUDY, STUDY.partition("[[")[0] + 'file = "waypoints.csv"\n'):
         (tmp_path / "study.toml").write_text(text)
-        study = load_study(tmp_path / "study.toml")
+        study = load_study(read_toml(tmp_path / "study.toml"))
         assert study.trajectory is not None
         paths.append(path_of(study.trajectory, robot_of(study).pose_names))
     assert paths[0] == paths[1]
@@ -48,6 +49,6 @@ def test_the_example_is_timed_and_its_waypoints_may_stand_in_a_file(tmp_path: Pa
 def test_the_example_of_a_cycle_has_another_payload_on_the_way_back(tmp_path: Path) -> None:
     file = tmp_path / "study.toml"
     file.write_text(STUDY.partition("[trajectory.path]")[0] + CYCLE)
-    asked = load_study(file).trajectory
+    asked = load_study(read_toml(file)).trajectory
     assert asked is not None
     assert (asked.payload, asked.payload_back) == (1.0, 0.0)

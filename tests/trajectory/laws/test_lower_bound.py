@@ -54,9 +54,9 @@ def test_rows_hold_the_exact_coefficients_everywhere_inside_their_intervals(robo
         b = inverse_dynamics(robot, 1.0, pose, first, second) - c
         joints = actuator_motion(robot, pose, first, second, third)
         for found, radius, exact in (
-            (rows.a, rows.a_radius, np.hstack([a / 127.0, joints.first / 450.0])),
-            (rows.b, rows.b_radius, np.hstack([b / 127.0, joints.second / 450.0])),
-            (rows.c, rows.c_radius, np.hstack([c / 127.0, 0 * c])),
+            (rows.a, rows.a_radius, np.hstack([joints.first / 450.0, a / 127.0])),
+            (rows.b, rows.b_radius, np.hstack([joints.second / 450.0, b / 127.0])),
+            (rows.c, rows.c_radius, np.hstack([0 * c, c / 127.0])),
         ):
             assert (np.abs(exact - found) <= radius + 1e-11).all()
         assert (highest >= ((20.0 / np.abs(joints.first)) ** 2).min(axis=-1) * (1 - 1e-12)).all()

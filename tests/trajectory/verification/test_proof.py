@@ -9,8 +9,8 @@ import pytest
 
 from kinematics import Heli4
 from trajectory import AdeptCycle, Limits, TimedPath, motion_of, repair, time_optimal, verify
+from trajectory.limits import uses
 from trajectory.verification.limit_proof import proved_use
-from trajectory.verification.limit_usage import uses
 
 ALL = Limits(
     speed=20.0,
@@ -34,9 +34,9 @@ def test_no_instant_uses_more_than_is_proved(robot: Heli4, law: TimedPath) -> No
     bounds = proved_use(robot, law, ALL, 1.0)
     t = np.random.default_rng(31).uniform(0.0, law.duration, 200_000)
     motion = motion_of(robot, law.at(t), 1.0)
-    for name, use in uses(robot, motion, ALL).items():
+    for limit, use in uses(robot, motion, ALL).items():
         if use.ratio is not None:
-            assert use.ratio.max() <= bounds[name]
+            assert use.ratio.max() <= bounds[limit.name]
     rms = np.sqrt((motion.torque**2).mean(axis=0)) / 120.0  # by Monte Carlo, good to 1e-3
     assert rms.max() == pytest.approx(bounds["rms torque"], rel=3e-3)
 

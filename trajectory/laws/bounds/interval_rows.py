@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -29,7 +28,7 @@ from kinematics import (
     evaluate,
     torques,
 )
-from trajectory.limits import Limits
+from trajectory.limits import IntervalRows, Limits, OverIntervals, SlopesOverIntervals
 from trajectory.paths import Path, places
 
 _DIRECTIONS = 16  # in which the tool's acceleration is bounded, over half a turn
@@ -37,23 +36,9 @@ _MOVING = 0.5  # the length of a tangent is 1, or 0 where the tool turns in plac
 _SLACK = 1e-12  # relative and absolute: far more than what evaluation in double arithmetic is off by
 
 
-class Rows(NamedTuple):
-    """Rows |a u + b x + c| <= 1 over intervals of s, (k, rows) each: a at both ends, and each coefficient in the middle
-    with the radius by which it may differ inside."""
-
-    a_start: Array
-    a_end: Array
-    a: Array
-    a_radius: Array
-    b: Array
-    b_radius: Array
-    c: Array
-    c_radius: Array
-    w: Array
-    w_radius: Array
-
-
-def interval_rows(robot: Mechanism, path: Path, limits: Limits, payload: float, edges: Array) -> tuple[Rows, Array]:
+def interval_rows(
+    robot: Mechanism, path: Path, limits: Limits, payload: float, edges: Array
+) -> tuple[IntervalRows, Array]:
     """The rows, and the largest x that the limits of speed allow (k,) [m^2/s^2], between neighbouring edges (k + 1,).
 
     Args:
@@ -68,7 +53,7 @@ def interval_rows(robot: Mechanism, path: Path, limits: Limits, payload: float, 
     steepest = np.abs(enclose(slopes, *(np.insert(v, v.shape[1], payload, axis=1) for v in (low, high)))).max(axis=0)
     radius = np.nan_to_num(steepest * half, nan=np.inf) + _SLACK * (1.0 + np.abs(found))
 
-    def of(part: int) -> tuple[Array, Array]:
+    def ball(part: int) -> tuple[Array, Array]:
         columns = slice(part * count, (part + 1) * count)
         return found[:, columns], radius[:, columns]
 
@@ -76,24 +61,21 @@ def interval_rows(robot: Mechanism, path: Path, limits: Limits, payload: float, 
         columns = slice(part * count, (part + 1) * count)
         return ends[:-1, columns], ends[1:, columns]
 
-    first, second, none = of(4), of(5), np.zeros_like(of(0)[0])
-    slowest = np.maximum(np.abs(first[0]) - first[1], 0.0) / limits.of_joints("speed", count)
-    with np.errstate(divide="ignore"):
-        highest = slowest.max(axis=-1) ** -2.0
-    if limits.tool_speed is not None:
-        moving = np.linalg.norm(middle[1][:, : places(path.pose_names)], axis=-1) > _MOVING
-        highest = np.where(moving, np.minimum(highest, limits.tool_speed**2), highest)
-    groups = [np.empty((len(Rows._fields), len(half), 0))]
-    if (torque := limits.of_joints("torque", count)) is not None:
-        constant = _with_friction(robot, of(2), first, highest)
-        groups.append(np.stack([*at_ends(0), *of(0), *of(1), *constant, *of(3)]) / torque)
-    if (most := limits.of_joints("acceleration", count)) is not None:
-        halved = [v / 2 for v in second]
-        groups.append(np.stack([*at_ends(4), *first, *second, none, none, *halved]) / most)
-    if limits.tool_acceleration is not None:
-        tool = _tool_rows(path, edges, middle, low, high)
-        groups.append(tool / limits.tool_acceleration)
-    return Rows(*np.concatenate(groups, axis=-1)), highest
+    first, second, none = ball(4), ball(5), np.zeros_like(ball(0)[0])
+    moving = np.linalg.norm(middle[1][:, : places(path.pose_names)], axis=-1) > _MOVING
+    least = SlopesOverIntervals(np.maximum(np.abs(first[0]) - first[1], 0.0), moving)
+    bounds = [limit.highest_over_intervals(least, limits) for limit in limits]
+    highest = np.min([most for most in bounds if most is not None], axis=0)
+
+    def torque() -> IntervalRows:
+        constant = _with_friction(robot, ball(2), first, highest)
+        return IntervalRows(*at_ends(0), *ball(0), *ball(1), *constant, *ball(3))
+
+    acceleration = IntervalRows(*at_ends(4), *first, *second, none, none, *(v / 2 for v in second))
+    over = OverIntervals(acceleration, torque, lambda: _tool_rows(path, edges, middle, low, high))
+    given = [limit.rows_over_intervals(over, limits) for limit in limits]
+    rows = [IntervalRows(*[none[:, :0]] * len(IntervalRows._fields)), *(row for row in given if row is not None)]
+    return IntervalRows(*(np.concatenate(part, axis=-1) for part in zip(*rows, strict=True))), highest
 
 
 def _with_friction(
@@ -155,8 +137,8 @@ def _programs(robot: Mechanism) -> tuple[BlockProgram, BoxProgram]:
     )
 
 
-def _tool_rows(path: Path, edges: Array, middle: list[Array], low: Array, high: Array) -> Array:
-    """(10, k, rows): the tool's acceleration along fixed directions of the plane in which the path bends."""
+def _tool_rows(path: Path, edges: Array, middle: list[Array], low: Array, high: Array) -> IntervalRows:
+    """The tool's acceleration along fixed directions of the plane in which the path bends."""
     count, n = places(path.pose_names), len(path.pose_names)
     tangent, bend = (v[:, :count] for v in middle[1:])
     across = bend - (bend * tangent).sum(axis=-1, keepdims=True) * tangent
@@ -176,4 +158,4 @@ def _tool_rows(path: Path, edges: Array, middle: list[Array], low: Array, high: 
     a, b = along(tangent), along(bend)
     none = np.zeros_like(a)
     starts, stops = along(ends[:-1, :count]), along(ends[1:, :count])
-    return np.stack([starts, stops, a, radius(1), b, radius(2), none, none, b / 2, radius(2) / 2])
+    return IntervalRows(starts, stops, a, radius(1), b, radius(2), none, none, b / 2, radius(2) / 2)

@@ -21,8 +21,8 @@ import numpy as np
 
 from kinematics import Array, Mechanism
 from trajectory.errors import TimingFailed
-from trajectory.laws.bounds.interval_rows import Rows, interval_rows
-from trajectory.limits import Limits
+from trajectory.laws.bounds.interval_rows import interval_rows
+from trajectory.limits import IntervalRows, Limits
 from trajectory.paths import Path, require_poses_of
 
 _ROUNDING = 1e-9  # relative: far more than the arithmetic of the linear programs is off by
@@ -36,7 +36,7 @@ def lower_bound(robot: Mechanism, path: Path, limits: Limits, payload: float, in
     Args:
         robot: any mechanism with the path's kind of pose.
         path: without a jump of its tangent, within reach and regular.
-        limits: of joints and tool; those of speed, acceleration and torque are used.
+        limits: of joints and tool; those are used that give rows over intervals.
         payload: mass at the tool [kg].
         intervals: of s, the finer the closer the bound.
 
@@ -60,7 +60,7 @@ def lower_bound(robot: Mechanism, path: Path, limits: Limits, payload: float, in
     return _least_time(x, lengths, steepest, highest) * (1.0 - _ROUNDING)
 
 
-def _steepest(rows: Rows, highest: Array, limit: float) -> Array:
+def _steepest(rows: IntervalRows, highest: Array, limit: float) -> Array:
     """(2, k) the most that u and -u can be in each interval [m/s^2]; 0 where there is no such u."""
     by_x = np.hstack([rows.b - rows.b_radius, -rows.b - rows.b_radius])
     rest = np.hstack([1.0 - rows.c + rows.c_radius, 1.0 + rows.c + rows.c_radius])
@@ -71,7 +71,7 @@ def _steepest(rows: Rows, highest: Array, limit: float) -> Array:
     return found * (1.0 + _ROUNDING)
 
 
-def _averaged(rows: Rows, lengths: Array, steepest: Array) -> tuple[Array, Array, Array]:
+def _averaged(rows: IntervalRows, lengths: Array, steepest: Array) -> tuple[Array, Array, Array]:
     """(k, 2 rows) g, h and r with g x_0 + h x_1 <= r, averaged over each interval."""
     d = lengths[:, None]
     away = steepest.sum(axis=0)[:, None] * d / 4

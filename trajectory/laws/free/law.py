@@ -8,20 +8,21 @@ the samples is for `repair`. The start is the time-optimal law on the cycle's ow
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from functools import lru_cache
 
 import casadi as ca
 import numpy as np
 
-from kinematics import Array, InvalidValue, Mechanism, derivatives_along, friction, torques
+from kinematics import Array, Mechanism, derivatives_along, friction, torques
 from trajectory.errors import TimingFailed
+from trajectory.laws import LAWS
 from trajectory.laws.free.interval_nlp import IntervalConstraints, IntervalProgram
 from trajectory.laws.toppra import time_optimal
-from trajectory.limits import Limits
+from trajectory.limits import Cap, Constraint, Disc, Limits, Linear, Place, Squared, SymbolicMotion, Third
 from trajectory.motions import PoseSpline
 from trajectory.paths import TOLERANCE, Arch, Path, PoseBounds, bezier_points, places, require_poses_of
 
+_AT_INSTANTS = (Place, Cap, Linear, Disc)
 _AT = (0.0, 0.5)  # where in an interval speed, acceleration, torque are kept
 _ARCH_AT = 480  # instants, about, at which the tool stays outside the arch: a tenth of a blend apart at most
 _PROOF = 100_000  # parts of the motion, over each of which the arch is proved to be kept
@@ -52,8 +53,7 @@ def free_motion(
         TimingFailed: the solver did not converge.
     """
     require_poses_of(robot, path)
-    if limits.jerk is None:
-        raise InvalidValue("Limits jerk for the free law", None, "a limit: it keeps the jerk")
+    LAWS["free"].require_kept(limits)
     arch = Arch.of(path)
     program = _program(robot, arch, limits, payload, intervals, within)
     guess, end, duration = _guess(robot, path, limits, payload, intervals)
@@ -91,7 +91,7 @@ def _require_clear(arch: Arch, motion: PoseSpline) -> None:
 
 def _guess(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int) -> tuple[Array, Array, float]:
     """From toppra's law: the intervals' starts (k, 4 n) and the end (3 n,), by t / T, and its duration."""
-    plain = replace(limits, jerk=None, position=None, stall_torque=None, no_load_speed=None, rms_torque=None)
+    plain = limits.without(*LAWS["toppra"].refuses, Place)
     law = time_optimal(robot, path, plain, payload, 1000)
     motion = law.at(np.linspace(0.0, law.duration, intervals + 1))
     velocity = motion.velocity * law.duration
@@ -154,32 +154,22 @@ def _within(start: ca.SX, t: float, n: int) -> list[ca.SX]:
 
 def _limited(robot: Mechanism, limits: Limits, payload: float) -> tuple[ca.Function, ca.Function, ca.Function]:
     """What is kept between -1 and 1 at a pose, velocity and acceleration; the joints' jerk; squares of the torque."""
-    model, count = robot.model(), len(robot.joint_names)
+    model = robot.model()
     rates = velocity, acceleration, jerk = [
         ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration", "jerk")
     ]
     joints, first, second, third = derivatives_along(model.drives @ model.inverse, model.pose, rates)
     tau = torques(robot, payload, velocity, acceleration) + friction(robot, first)
-    rows: list[ca.SX] = []
-    for name, values in (("speed", first), ("acceleration", second), ("torque", tau)):
-        if (limit := limits.of_joints(name, count)) is not None:
-            rows.append(values / ca.DM(limit))
-    for cap, rate in ((limits.tool_speed, velocity), (limits.tool_acceleration, acceleration)):
-        if cap is not None:
-            rows.append(ca.sumsqr(rate[: places(robot.pose_names)]) / cap**2)
-    if (ranges := limits.ranges(count)) is not None:
-        rows.append((2 * joints - ca.DM(ranges[0] + ranges[1])) / ca.DM(ranges[1] - ranges[0]))
-    stall, fastest = limits.of_joints("stall_torque", count), limits.of_joints("no_load_speed", count)
-    if stall is not None and fastest is not None:
-        rows += [tau / ca.DM(stall) + sign * first / ca.DM(fastest) for sign in (1.0, -1.0)]
-    rms = limits.of_joints("rms_torque", count)
-    square = ca.SX(0, 1) if rms is None else (tau / ca.DM(rms)) ** 2
-    most = limits.of_joints("jerk", count)
-    assert most is not None
-    third = third / ca.DM(most)
+    tool = places(robot.pose_names)
+    motion = SymbolicMotion((joints, first, second, third), velocity[:tool], acceleration[:tool], tau)
+
+    def kept(*kinds: type[Constraint]) -> ca.SX:
+        return ca.vertcat(ca.SX(0, 1), *(one.symbolic(motion, limits) for one in limits if issubclass(one.kind, kinds)))
+
+    instants, jerks, squares = kept(*_AT_INSTANTS), kept(Third), kept(Squared) ** 2
     fixed = ca.SX(robot.geometry.vector())
     inputs = [model.pose, velocity, acceleration]
-    limited, jerks, squares = (ca.substitute(v, model.geometry, fixed) for v in (ca.vertcat(*rows), third, square))
+    limited, jerks, squares = (ca.substitute(v, model.geometry, fixed) for v in (instants, jerks, squares))
     return (
         ca.Function("limited", inputs, [limited], {"cse": True}),
         ca.Function("jerk", [*inputs, jerk], [jerks], {"cse": True}),

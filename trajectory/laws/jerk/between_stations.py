@@ -27,7 +27,7 @@ def used(sizes: Array, values: Array, rows: Rows, out: Array) -> None:
         sizes: (n,) of the intervals.
         values: (2 n + 2,) x and w at the knots.
         rows: at the stations.
-        out: (n, f + m + 1 + c) over its limit: forces, jerks, x and tool, the last two squares.
+        out: (n, f + j + 1 + t) over its limit: forces, jerks, x and tool, the last two squares.
     """
     found, base = np.empty((_PLACES.size, out.shape[1])), np.empty((3, 4))
     for k in range(sizes.size):
@@ -69,7 +69,7 @@ def _used_at(x: float, w: float, z: float, first: int, shares: Array, rows: Rows
     for j in range(tools):
         for i in range(PARTS + 1):
             c = rows.tool[first + i, j]
-            out[at + 1] += shares[i] * (c[0] * w * w + c[1] * w * x + c[2] * x * x)
+            out[at + 1 + j] += shares[i] * (c[0] * w * w + c[1] * w * x + c[2] * x * x)
     inverse = 0.0
     for i in range(PARTS + 1):
         inverse += shares[i] / rows.most[first + i]

@@ -35,7 +35,7 @@ class Kept(NamedTuple):
     Attributes:
         sizes: (n,) of the intervals of u.
         rows: at their stations.
-        tight: (n, f + m + 1 + c) what each interval's rows are kept to: forces, jerks, x, tool.
+        tight: (n, f + j + 1 + t) what each interval's rows are kept to: forces, jerks, x, tool.
         mean_tight: (m or 0,) what the mean squares are kept to.
     """
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from kinematics import Array, InvalidValue, Mechanism
 from trajectory.errors import PathBeyondLimit, TimingFailed
+from trajectory.laws import LAWS
 from trajectory.laws.at_rest import require_possible
 from trajectory.laws.jerk.limit_rows import PARTS, smoothstep
 from trajectory.laws.jerk.motion import law_in_time
@@ -46,8 +47,7 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     """
     if intervals < LEAST_INTERVALS:
         raise InvalidValue("intervals of the jerk law", intervals, f"at least {LEAST_INTERVALS}")
-    if limits.jerk is None:
-        raise InvalidValue("Limits jerk for the jerk law", None, "a limit; without one the toppra law is the fastest")
+    LAWS["jerk"].require_kept(limits)
     require_poses_of(robot, path)
     require_smooth(path)
     require_possible(robot, path, limits, payload, np.linspace(0.0, path.length, _CHECKED + 1))

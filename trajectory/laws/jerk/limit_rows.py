@@ -16,11 +16,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics import Array, JointMotion, Mechanism, actuator_motion
-from trajectory.limits import Limits
-from trajectory.motions import AlongPath, torque_along
+from kinematics import Array, JointMotion, Mechanism, actuator_motion, bisected
+from trajectory.limits import Along, Cap, Disc, Limits, Linear, Sloped, Squared, Third, TorqueAlong
+from trajectory.motions import torque_along
 from trajectory.paths import Path, places
 
+_FINEST = 2.0**-60  # of u, as it is found by bisection
 PARTS = 3  # of each interval: the limits stand at its stations, both ends among them
 FORCE = ("by w", "by x", "by rate", "constant", "by rate, either way", "either way")  # columns of `Rows.force`
 
@@ -30,10 +31,10 @@ class Rows(NamedTuple):
 
     Attributes:
         force: (g, f, 6) |a w + b x + d sqrt(x) + c| + e sqrt(x) + k <= 1, columns a, b, d, c, e, k.
-        jerk: (g, m, 3) sqrt(x) |a z + b w + c x| <= 1.
+        jerk: (g, j, 3) sqrt(x) |a z + b w + c x| <= 1.
         most: (g,) of x.
-        tool: (g, 1 or 0, 3) a w^2 + b w x + c x^2 <= 1.
-        mean: (g, m or 0, 4) a w + b x + d sqrt(x) + c, whose mean square over the time is at most 1.
+        tool: (g, t, 3) a w^2 + b w x + c x^2 <= 1.
+        mean: (g, m, 4) a w + b x + d sqrt(x) + c, whose mean square over the time is at most 1.
     """
 
     force: Array
@@ -68,12 +69,8 @@ def smoothstep(u: Array) -> tuple[Array, Array, Array, Array]:
 
 def progress_at(share: Array) -> Array:
     """u (k,) where S5 is so much, by bisection."""
-    low, high = np.zeros_like(share), np.ones_like(share)
-    for _ in range(60):
-        middle = (low + high) / 2
-        below = middle**3 * (10.0 + middle * (6.0 * middle - 15.0)) < share
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return (low + high) / 2
+    low, high = bisected(lambda u: smoothstep(u)[0] < share, np.zeros_like(share), np.ones_like(share), _FINEST)
+    return 0.5 * (low + high)
 
 
 def stations(knots: Array) -> Array:
@@ -88,29 +85,20 @@ def rows_of(robot: Mechanism, path: Path, limits: Limits, payload: float, knots:
     Raises:
         UnreachablePose: a limb cannot reach a station.
     """
-    u = stations(knots)
-    share, *slopes = smoothstep(u)
-    along = tuple(path.length * v for v in slopes)
-    derivatives = path.evaluate(np.clip(path.length * share, 0.0, path.length), 3)
-    joints = actuator_motion(robot, *derivatives)
-    if not np.isfinite(joints.third).all():
-        robot.require_reachable(derivatives[0])
-    count = joints.first.shape[-1]
-    torque = _torque(robot, payload, derivatives, along, joints, limits)
-    force = [] if (row := _acceleration(joints, along, limits)) is None else [row]
-    mean = np.empty((u.size, 0, 4))
-    if torque is not None:
-        both = _turning(joints.first)
-        force += _torque_rows(robot, limits, torque, joints, along, both)
-        if (rms := limits.of_joints("rms_torque", count)) is not None:
-            mean = torque / rms[:, None]
-    tangent, bend = (d[:, : places(path.pose_names)] for d in derivatives[1:3])
+    along = _along(robot, path, limits, payload, stations(knots))
+    count = along.joints.first.shape[0]
+    force = [
+        _columns(row.by_u, row.by_x, row.by_rate, row.constant, *_either(row))
+        for row in limits.constraints(Linear, along)
+    ]
+    tool = [_square(disc) for disc in limits.constraints(Disc, along)]
+    mean = [_columns(row.by_u, row.by_x, row.by_rate, row.constant) for row in limits.constraints(Squared, along)]
     return Rows(
-        np.concatenate(force, axis=1) if force else np.empty((u.size, 0, len(FORCE))),
-        _jerk(joints, along, _of_joints(limits, "jerk", joints)),
-        _most(joints, along, tangent, limits),
-        _tool(tangent, bend, along, limits.tool_acceleration),
-        mean,
+        np.concatenate([np.empty((count, 0, len(FORCE))), *force], axis=1),
+        _third(limits, along),
+        np.min([cap.most for cap in limits.constraints(Cap, along)], axis=0),
+        np.concatenate([np.empty((count, 0, 3)), *tool], axis=1),
+        np.concatenate([np.empty((count, 0, 4)), *mean], axis=1),
     )
 
 
@@ -118,71 +106,61 @@ def _columns(*parts: Array | float) -> Array:
     return np.stack(np.broadcast_arrays(*parts), axis=-1)
 
 
-def _of_joints(limits: Limits, name: str, joints: JointMotion) -> Array:
-    """(m,) a limit that is set."""
-    limit = limits.of_joints(name, joints.first.shape[-1])
-    assert limit is not None
-    return limit
+def _either(row: Linear) -> tuple[Array | float, Array]:
+    """What is there with either sign: by the rate, and constant."""
+    return row.slope if isinstance(row, Sloped) else 0.0, row.friction
 
 
-def _acceleration(joints: JointMotion, along: tuple[Array, ...], limits: Limits) -> Array | None:
-    if (limit := limits.of_joints("acceleration", joints.first.shape[-1])) is None:
-        return None
-    first, second = (v[:, None] for v in along[:2])
-    none = np.zeros_like(joints.first)
-    parts = (joints.first * first / limit, (joints.first * second + joints.second * first**2) / limit)
-    return _columns(*parts, none, none, none, none)
+def _third(limits: Limits, along: Along) -> Array:
+    rows = limits.constraints(Third, along)
+    return np.concatenate([_columns(row.by_z, row.by_u, row.by_x) for row in rows], axis=1)
 
 
-def _jerk(joints: JointMotion, along: tuple[Array, ...], limit: Array) -> Array:
-    first, second, third = (v[:, None] for v in along)
-    by_w = 3.0 * (joints.first * second + joints.second * first**2)
-    by_x = joints.first * third + 3.0 * joints.second * first * second + joints.third * first**3
-    return _columns(joints.first * first, by_w, by_x) / limit[:, None]
-
-
-def _most(joints: JointMotion, along: tuple[Array, ...], tangent: Array, limits: Limits) -> Array:
-    """(g,) of x; without bound where nothing moves, at both ends."""
-    used = np.abs(joints.first) / _of_joints(limits, "speed", joints)
-    fastest = used.max(axis=-1)
-    if limits.tool_speed is not None:
-        fastest = np.maximum(fastest, np.linalg.norm(tangent, axis=-1) / limits.tool_speed)
-    with np.errstate(divide="ignore"):
-        return (fastest * along[0]) ** -2.0
-
-
-def _tool(tangent: Array, bend: Array, along: tuple[Array, ...], cap: float | None) -> Array:
-    if cap is None:
-        return np.empty((tangent.shape[0], 0, 3))
-    by_w = tangent * along[0][:, None] / cap
-    by_x = (tangent * along[1][:, None] + bend * along[0][:, None] ** 2) / cap
+def _square(disc: Disc) -> Array:
+    by_w, by_x = disc.by_u, disc.by_x
     return _columns((by_w**2).sum(axis=-1), 2.0 * (by_w * by_x).sum(axis=-1), (by_x**2).sum(axis=-1))[:, None]
 
 
-def _torque(
-    robot: Mechanism,
-    payload: float,
-    derivatives: tuple[Array, ...],
-    along: tuple[Array, ...],
-    joints: JointMotion,
-    limits: Limits,
-) -> Array | None:
-    """(g, m, 4): by w, by x, by the rate and constant; None where nothing limits it."""
-    if limits.torque is None and limits.stall_torque is None and limits.rms_torque is None:
-        return None
-    rate = _usual_rate(joints, along, limits)
-    first, second = (v[:, None] for v in along[:2])
-    size = float(np.abs(first).max()), float(np.abs(second).max())
-    parts: AlongPath = torque_along(robot, payload, derivatives, size[0] * rate, size[1] * rate**2)
-    by_x = parts.inertia * second + parts.centrifugal * first**2
-    return _columns(parts.inertia * first, by_x, parts.viscous * first, parts.constant)
+def _along(robot: Mechanism, path: Path, limits: Limits, payload: float, u: Array) -> Along:
+    """The way by u, at stations (g,)."""
+    share, *slopes = smoothstep(u)
+    derivatives = path.evaluate(np.clip(path.length * share, 0.0, path.length), 3)
+    joints = actuator_motion(robot, *derivatives)
+    if not np.isfinite(joints.third).all():
+        robot.require_reachable(derivatives[0])
+    first, second, third = (path.length * v[:, None] for v in slopes)
+    by_u = JointMotion(
+        joints.position,
+        joints.first * first,
+        joints.first * second + joints.second * first**2,
+        joints.first * third + 3.0 * joints.second * first * second + joints.third * first**3,
+    )
+    tangent, bend = (d[:, : places(path.pose_names)] for d in derivatives[1:3])
+
+    def split() -> TorqueAlong:
+        rate, size = _usual_rate(limits, along), [float(np.abs(v).max()) for v in (first, second)]
+        parts = torque_along(robot, payload, derivatives, size[0] * rate, size[1] * rate**2)
+        constant, friction = _friction(robot, parts.constant, joints.first)
+        by_x = parts.inertia * second + parts.centrifugal * first**2
+        return TorqueAlong(parts.inertia * first, by_x, parts.viscous * first, constant, friction, parts.constant)
+
+    along = Along(by_u, (tangent * first, tangent * second + bend * first**2), split)
+    return along
 
 
-def _usual_rate(joints: JointMotion, along: tuple[Array, ...], limits: Limits) -> float:
-    """About the rate of a motion that keeps speed and jerk [1/s]."""
-    used = np.abs(joints.first) * along[0][:, None] / _of_joints(limits, "speed", joints)
-    jerk = np.abs(_jerk(joints, along, _of_joints(limits, "jerk", joints))[..., 2])
-    return min(1.0 / float(used.max()), float(jerk.max()) ** (-1 / 3))
+def _usual_rate(limits: Limits, along: Along) -> float:
+    """About the rate of a motion that keeps the limits of speed and jerk [1/s]."""
+    most = min(float(cap.most.min()) for cap in limits.constraints(Cap, along))
+    jerk = np.abs(_third(limits, along)[..., 2])
+    return min(most**0.5, float(jerk.max()) ** (-1 / 3))
+
+
+def _friction(robot: Mechanism, constant: Array, first: Array) -> tuple[Array, Array]:
+    """(g, m) the torque's constant, and what friction is kept apart from it: where it may have either sign."""
+    drives, both = robot.inertia.drive_train, _turning(first)
+    known = drives.friction(first)[0]
+    coulomb = drives.of_actuators("coulomb", first.shape[-1])
+    return np.where(both, constant - known, constant), np.where(both, coulomb, 0.0)
 
 
 def _turning(first: Array) -> Array:
@@ -196,25 +174,6 @@ def _turning(first: Array) -> Array:
     for k in range(PARTS + 1):
         turning[k : first.shape[0] - PARTS + k : PARTS] |= apart
     return turning
-
-
-def _torque_rows(
-    robot: Mechanism, limits: Limits, torque: Array, joints: JointMotion, along: tuple[Array, ...], both: Array
-) -> list[Array]:
-    """(g, m, 6) for the peak torque, for the speed-torque line, or both."""
-    count = joints.first.shape[-1]
-    friction = robot.inertia.drive_train.of_actuators("coulomb", count)
-    known = robot.inertia.drive_train.friction(joints.first)[0]
-    *rates, constant = (torque[..., k] for k in range(4))
-    constant = np.where(both, constant - known, constant)
-    either = np.where(both, friction, 0.0)
-    peak, stall, fastest = (limits.of_joints(name, count) for name in ("torque", "stall_torque", "no_load_speed"))
-    rows = []
-    for limit, line in ((peak, 0.0), (stall, 0.0 if fastest is None else 1.0 / fastest)):
-        if limit is not None:
-            slope = np.abs(joints.first) * along[0][:, None] * line
-            rows.append(_columns(*(v / limit for v in (*rates, constant)), slope, either / limit))
-    return rows
 
 
 def weight_use(rows: Rows) -> float:

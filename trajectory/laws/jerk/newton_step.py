@@ -24,8 +24,8 @@ def _row_curvature(x: float, duals: Array, force: Array, tool: Array, local: Arr
         for side in range(2):
             by_root = force[j, 4] + (force[j, 2] if side == 0 else -force[j, 2])
             local[0] += max(-by_root, 0.0) * duals[2 * j + side] * cube
-    for j in range(tool.shape[0]):  # one
-        dual = duals[duals.size - 2]
+    for j in range(tool.shape[0]):
+        dual = duals[duals.size - 1 - tool.shape[0] + j]
         local[0] += 2.0 * tool[j, 2] * dual
         local[1] += tool[j, 1] * dual
         local[2] += 2.0 * tool[j, 0] * dual

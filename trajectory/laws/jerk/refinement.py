@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics import Array, Mechanism
+from kinematics import Array, Mechanism, bisected
 from trajectory.laws.jerk.between_stations import used
 from trajectory.laws.jerk.interior_point import SOLVED, Kept, search
 from trajectory.laws.jerk.limit_rows import PARTS, Rows, rows_of, uniform_rate, weight_use
@@ -33,7 +33,7 @@ _NEARLY = 1e-3  # over a row: more is no answer
 _KEPT = 1e-4  # over a row that is left to the end
 _BETWEEN = 4  # parts of an interval, at whose own stations an answer is measured
 _LEAST_RATE = 0.1  # to which an answer is slowed down
-_BISECTIONS = 20
+_RATE = 1e-6  # of the rates that are tried: how finely one is found
 _ROUGHLY, _CLOSELY = 1e-2, 1e-5  # of the time: how far from the least one a search may end
 _FAR, _NEAR, _SAME = 1e-4, 1e-5, 1e-6  # barrier of a search that starts from a slow, a good, its own motion
 _STEPS = 400
@@ -148,10 +148,7 @@ def _largest_rate(used_at: Callable[[float], float]) -> float | None:
     low, high = _LEAST_RATE, 1.0
     if not used_at(low) <= 1.0:
         return None
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if used_at(middle) <= 1.0 else (low, middle)
-    return low
+    return float(bisected(lambda rate: used_at(float(rate)) <= 1.0, low, high, _RATE * (high - low))[0])
 
 
 def _to_be_gained(coarse: Answer, fine: Answer) -> float:

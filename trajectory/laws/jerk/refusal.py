@@ -9,7 +9,7 @@ import numpy as np
 from kinematics import Array, Mechanism, actuator_motion, inverse_dynamics
 from trajectory.errors import TimingFailed
 from trajectory.laws.at_rest import require_held
-from trajectory.limits import Limits
+from trajectory.limits import Limits, MeanSquareLimit
 from trajectory.paths import Path
 
 _LOOKED_AT = 2001  # arc lengths
@@ -30,13 +30,12 @@ def refuse(robot: Mechanism, path: Path, limits: Limits, payload: float, interva
     turning = actuator_motion(robot, poses, first, none, none).first
     friction = robot.inertia.drive_train.friction(turning)[0]
     found = f"the search did not settle on {intervals} intervals"
-    for name, what, torque in (
-        ("torque", "weight and friction", weight + friction),
-        ("stall_torque", "weight and friction", weight + friction),
-        ("rms_torque", "weight alone", weight),
-    ):
-        if (most := limits.of_joints(name, weight.shape[1])) is not None and (np.abs(torque) >= most).any():
-            found = f"no motion within {name}: {_lacking(robot, s, poses, torque, most, what)}"
+    for limit in limits:
+        mean = isinstance(limit, MeanSquareLimit)
+        what, torque = ("weight alone", weight) if mean else ("weight and friction", weight + friction)
+        most = limit.holding_torque(limits, weight.shape[1])
+        if most is not None and (np.abs(torque) >= most).any():
+            found = f"no motion within {limit.fields[0].name}: {_lacking(robot, s, poses, torque, most, what)}"
             break
     raise TimingFailed("jerk", {**limits.as_dict(), "payload": payload, "path": path.as_dict()}, found)
 

@@ -77,7 +77,7 @@ def slacks_of(states: Array, sizes: Array, rows: Rows, tight: Array, out: Array)
             left[at] = rows.most[g] * t[forces + joints] - x
             for j in range(tools):
                 c = rows.tool[g, j]
-                left[at + 1] = t[forces + joints + 1] - (c[0] * w * w + c[1] * w * x + c[2] * x * x)
+                left[at + 1 + j] = t[forces + joints + 1 + j] - (c[0] * w * w + c[1] * w * x + c[2] * x * x)
             left[left.size - 1] = x + _POSITIVE[i] * sizes[k] * w
             for e in range(left.size):
                 least = min(least, left[e])
@@ -124,7 +124,7 @@ def gradients_of(states: Array, sizes: Array, rows: Rows, tight: Array, out: Arr
             by_x[at], by_tight[at] = 1.0, rows.most[g]
             for j in range(tools):
                 c = rows.tool[g, j]
-                by_x[at + 1], by_w[at + 1] = c[1] * w + 2.0 * c[2] * x, 2.0 * c[0] * w + c[1] * x
+                by_x[at + 1 + j], by_w[at + 1 + j] = c[1] * w + 2.0 * c[2] * x, 2.0 * c[0] * w + c[1] * x
             last = by_x.size - 1
             by_x[last], by_w[last], by_tight[last] = -1.0, -_POSITIVE[i] * sizes[k], 0.0
 

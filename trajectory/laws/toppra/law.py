@@ -15,8 +15,9 @@ import math
 
 import numpy as np
 
-from kinematics import Array, InvalidValue, Mechanism
+from kinematics import Array, InvalidField, InvalidValue, Mechanism
 from trajectory.errors import TimingFailed
+from trajectory.laws import LAWS
 from trajectory.laws.at_rest import require_held, require_possible
 from trajectory.laws.toppra.path_rows import PathRows, path_rows
 from trajectory.laws.toppra.reachability import fastest_profile
@@ -34,11 +35,6 @@ _KEPT = 0.5  # of that: what the intervals that are not halved may leave
 _GRADING = 4.0  # times as long as its neighbour an interval may be: its middle alone does not show what it exceeds
 _TOGETHER = 50  # points, of which the one is named where the weight is furthest beyond a torque
 _ROUNDS = 40  # of halving
-_REFUSED = {
-    "jerk": "its s'' is bang-bang",
-    "stall_torque": "the speed-torque line is not linear in u and x",
-    "rms_torque": "it is a limit of the whole way, not of an instant",
-}
 
 
 def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = INTERVALS) -> TimedPath:
@@ -85,14 +81,12 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
 
 
 def _require_kept(robot: Mechanism, limits: Limits, payload: float, intervals: int) -> None:
-    for name, why in _REFUSED.items():
-        if getattr(limits, name) is not None:
-            raise InvalidValue(
-                f"Limits {name} for the toppra law", getattr(limits, name), f"no such limit, or another law: {why}"
-            )
+    LAWS["toppra"].require_kept(limits)
     viscous = robot.inertia.drive_train.viscous
-    if limits.torque is not None and np.any(np.asarray(viscous) > 0.0):
-        raise InvalidValue("DriveTrain viscous for the toppra law", viscous, "0: its limits are linear in s'^2, not s'")
+    if any(limit.of_torque for limit in limits) and np.any(np.asarray(viscous) > 0.0):
+        raise InvalidField(
+            "DriveTrain", "viscous", viscous, "0: its limits are linear in s'^2, not s'", "for the toppra law"
+        )
     if intervals < 1:
         raise InvalidValue("intervals of the toppra law", intervals, "at least 1")
     if not (math.isfinite(payload) and payload >= 0.0):

@@ -17,7 +17,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from kinematics import Array, Mechanism, actuator_motion, inverse_dynamics
-from trajectory.limits import Limits
+from trajectory.limits import Along, Cap, Disc, Limits, Linear, TorqueAlong
 from trajectory.paths import Path, places
 
 _FACETS = 32  # of the half disc inside the tool acceleration's; the cap is kept and at most 0.12 % is given away
@@ -51,56 +51,48 @@ class PathRows(NamedTuple):
 
 
 def path_rows(robot: Mechanism, path: Path, limits: Limits, payload: float, s: Array) -> PathRows:
-    """The rows: joint accelerations, torques, facets of the tool's acceleration, each if limited.
+    """The rows that are linear, and facets of discs.
 
     Args:
         robot: any mechanism with the path's kind of pose, that reaches each pose.
         path: any path.
-        limits: of joints and tool; those of speed, acceleration and torque are used.
+        limits: of joints and tool; those are used that are a `Cap`, `Linear` or a `Disc`.
         payload: mass at the tool [kg].
         s: (k,) increasing arc lengths [m].
     """
+    along = _along(robot, path, payload, s)
+    none = np.zeros_like(along.joints.first)[:, :0]
+    linear = [(row.by_u, row.by_x, row.constant, row.friction) for row in limits.constraints(Linear, along)]
+    rows = [(none,) * 4, *linear, *(_facets(disc) for disc in limits.constraints(Disc, along))]
+    highest = np.min([cap.most for cap in limits.constraints(Cap, along)], axis=0)
+    return PathRows(s, highest, *(np.concatenate(part, axis=-1) for part in zip(*rows, strict=True)))
+
+
+def _along(robot: Mechanism, path: Path, payload: float, s: Array) -> Along:
     pose, first, second = path.evaluate(s, 2)
-    count, none = len(robot.joint_names), np.zeros_like(pose)
+    none, tool = np.zeros_like(pose), places(robot.pose_names)
     joints = actuator_motion(robot, pose, first, second, none)
-    tool = places(robot.pose_names)
-    groups = [np.empty((3, s.size, 0))]
-    if (most := limits.of_joints("acceleration", count)) is not None:
-        groups.append(np.stack([joints.first, joints.second, np.zeros_like(joints.first)]) / most)
-    if (most := limits.of_joints("torque", count)) is not None:
+
+    def split() -> TorqueAlong:
         weight = inverse_dynamics(robot, payload, pose, none, none)
         by_u = inverse_dynamics(robot, payload, pose, none, first) - weight
         ways = [inverse_dynamics(robot, payload, pose, way * first, second) for way in (1.0, -1.0)]
-        by_x = sum(ways) / 2 - weight  # friction changes its sign with the way
-        groups.append(np.stack([by_u, by_x, weight]) / most)
-    if limits.tool_acceleration is not None:
-        groups.append(_tool_rows(first[:, :tool], second[:, :tool], limits.tool_acceleration))
-    with np.errstate(divide="ignore"):  # what is at rest bounds nothing
-        highest = (np.abs(joints.first) / limits.of_joints("speed", count)).max(axis=-1) ** -2.0
-        if limits.tool_speed is not None:
-            highest = np.minimum(highest, (np.linalg.norm(first[:, :tool], axis=-1) / limits.tool_speed) ** -2.0)
-    a, b, c = np.concatenate(groups, axis=-1)
-    return PathRows(s, highest, a, b, c, _friction(robot, limits, joints.first))
+        by_x = (ways[0] + ways[1]) / 2 - weight  # friction changes its sign with the way
+        friction = robot.inertia.drive_train.friction(joints.first)[0]
+        return TorqueAlong(by_u, by_x, np.zeros_like(weight), weight, friction, weight + friction)
+
+    return Along(joints, (first[:, :tool], second[:, :tool]), split)
 
 
-def _friction(robot: Mechanism, limits: Limits, rates: Array) -> Array:
-    """The Coulomb friction over its limit, to be added to c, where the joints move at these rates by s (k, m)."""
-    friction = [np.zeros_like(rates)] if limits.acceleration is not None else []
-    if limits.torque is not None:
-        friction.append(robot.inertia.drive_train.friction(rates)[0] / limits.of_joints("torque", rates.shape[1]))
-    if limits.tool_acceleration is not None:
-        friction.append(np.zeros((len(rates), _FACETS)))
-    return np.hstack([np.empty((len(rates), 0)), *friction])
-
-
-def _tool_rows(first: Array, second: Array, cap: float) -> Array:
-    """(3, k, facets) of a polygon inside the disc of the tool's acceleration; the normal part is never negative."""
+def _facets(disc: Disc) -> tuple[Array, Array, Array, Array]:
+    """Rows of a polygon inside the disc of the tool's acceleration; the normal part is never negative."""
+    first, second = disc.by_u, disc.by_x
     length = np.linalg.norm(first, axis=-1, keepdims=True)
     along = np.divide((second * first).sum(axis=-1, keepdims=True), length, where=length > 0.0, out=0.0 * length)
     tangent = np.divide(first, length, where=length > 0.0, out=np.zeros_like(first))
     normal = np.linalg.norm(second - along * tangent, axis=-1, keepdims=True)
     angles = (np.arange(_FACETS) + 0.5) * math.pi / _FACETS  # a vertex on the tangent: straight ahead all is used
-    inside = cap * math.cos(math.pi / (2 * _FACETS))
-    a = length * np.cos(angles) / inside
-    b = (along * np.cos(angles) + normal * np.sin(angles)) / inside
-    return np.stack([a, b, np.zeros_like(a)])
+    inside = math.cos(math.pi / (2 * _FACETS))
+    by_u = length * np.cos(angles) / inside
+    by_x = (along * np.cos(angles) + normal * np.sin(angles)) / inside
+    return by_u, by_x, np.zeros_like(by_u), np.zeros_like(by_u)

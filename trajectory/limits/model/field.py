@@ -1,0 +1,84 @@
+"""The fields of `Limits`, each with its unit, its words and what it may hold."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from kinematics import InvalidField
+
+SPEED_UNIT = "rad/s or m/s"
+
+
+@dataclass(frozen=True)
+class LimitField(ABC):
+    """One field.
+
+    Attributes:
+        name: in the record, and the key in a study.
+        words: what it is, for people.
+        expected: what it may hold, for people.
+        unit: SI; of a joint that turns, or that slides.
+        required: whether every robot has one.
+    """
+
+    name: str
+    words: str
+    expected: str
+    unit: str = ""
+    required: bool = False
+
+    @abstractmethod
+    def checked(self, value: Any) -> Any:
+        """The value as the record keeps it.
+
+        Raises:
+            InvalidValue: anything else than `expected`.
+        """
+
+
+class JointField(LimitField):
+    """A number > 0 for all joints, or one a joint."""
+
+    def checked(self, value: Any) -> float | tuple[float, ...]:
+        """A float, or a tuple of floats."""
+        numbers = _positive(self.name, value)
+        return numbers[0] if isinstance(value, int | float) else numbers
+
+
+class ToolField(LimitField):
+    """One number > 0."""
+
+    def checked(self, value: Any) -> float:
+        """A float."""
+        numbers = _positive(self.name, value)
+        if not isinstance(value, int | float):
+            raise InvalidField("Limits", self.name, value, "one number")
+        return numbers[0]
+
+
+class RangeField(LimitField):
+    """low < high for all joints, or one such pair a joint."""
+
+    def checked(self, value: Any) -> Any:
+        """(low, high), or a tuple of such pairs."""
+        try:
+            pairs = np.array(value, dtype=float)
+            if pairs.ndim not in (1, 2) or pairs.shape[-1] != 2 or not pairs.size:
+                raise ValueError
+        except (ValueError, TypeError):
+            raise InvalidField("Limits", self.name, value, "low < high, or one such pair a joint") from None
+        if not (np.isfinite(pairs).all() and (pairs[..., 0] < pairs[..., 1]).all()):
+            raise InvalidField("Limits", self.name, value, "finite, low < high")
+        return tuple(tuple(row) for row in pairs.tolist()) if pairs.ndim == 2 else tuple(pairs.tolist())
+
+
+def _positive(name: str, value: Any) -> tuple[float, ...]:
+    items = np.atleast_1d(np.asarray(value, dtype=object)).tolist()
+    numbers = [v for v in items if isinstance(v, int | float | np.integer | np.floating) and not isinstance(v, bool)]
+    if not items or len(numbers) < len(items) or not all(np.isfinite(v) and v > 0 for v in numbers):
+        raise InvalidField("Limits", name, value, "finite and > 0")
+    return tuple(float(v) for v in numbers)
