@@ -66,4 +66,5 @@ def _targets(setpoints: Setpoints, per_unit: Array, names: tuple[str, ...]) -> A
         row, axis = (int(k) for k in np.argwhere(over)[0])
         expected = f"{_INT32.min} to {_INT32.max}: fewer increments, less encoder_gear, or another zero"
         raise InvalidValue(f"0x607A of {names[axis]}, set-point {row}", int(targets[row, axis]), expected)
-    return targets.astype(np.int32)
+    result: Array = targets.astype(np.int32)
+    return result

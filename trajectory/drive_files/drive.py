@@ -68,7 +68,8 @@ class Drive:
             if len(_several(value)) not in (1, count):
                 raise InvalidField("Drive", name, value, f"one number or {count}, one an actuator")
         turns = np.array([2 * math.pi if unit == "rad" else 1.0 for unit in joint_units])
-        return np.asarray(self.increments) * np.asarray(self.encoder_gear) / turns
+        result: Array = np.asarray(self.increments) * np.asarray(self.encoder_gear) / turns
+        return result
 
 
 def _several(value: float | tuple[float, ...]) -> tuple[float, ...]:

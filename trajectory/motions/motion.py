@@ -56,7 +56,8 @@ def largest_speed(along: PathMotion, half: Array) -> Array:
     steepest = np.abs(along.snap)
     for rate in (along.jerk, along.acceleration, along.speed):
         steepest = np.abs(rate) + half * steepest
-    return steepest
+    result: Array = steepest
+    return result
 
 
 def travelled_snap(derivatives: Sequence[Array], fourth: Array, along: PathMotion, half: Array) -> Array:

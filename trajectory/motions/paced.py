@@ -58,7 +58,8 @@ class PacedMotion(Value):
     def progress(self) -> Array:
         """(k + 1,) share of the way at each knot."""
         along = np.interp(self.pace.position, self.motion.times, self.motion.progress)
-        return (along - along[0]) / (along[-1] - along[0])
+        result: Array = (along - along[0]) / (along[-1] - along[0])
+        return result
 
     @property
     def duration(self) -> float:

@@ -59,7 +59,8 @@ class PoseSpline(Value):
     @property
     def progress(self) -> Array:
         """(k + 1,) share of the duration at each knot."""
-        return self.times / self.times[-1]
+        result: Array = self.times / self.times[-1]
+        return result
 
     @property
     def duration(self) -> float:

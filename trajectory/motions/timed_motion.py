@@ -109,7 +109,8 @@ class TimedPath(Value):
     @property
     def progress(self) -> Array:
         """(k + 1,) share of the arc length at each knot."""
-        return self._cut.position / self._cut.position[-1]
+        result: Array = self._cut.position / self._cut.position[-1]
+        return result
 
     @property
     def duration(self) -> float:
@@ -178,4 +179,5 @@ class TimedPath(Value):
         for k in range(1, int((last - first).max()) + 1):
             anywhere = np.maximum(anywhere, most[np.minimum(first + k, last)])
         anywhere = anywhere + np.abs(fourth)
-        return np.where((first == last)[:, None], np.minimum(away[:, None] * slope[first], anywhere), anywhere)
+        result: Array = np.where((first == last)[:, None], np.minimum(away[:, None] * slope[first], anywhere), anywhere)
+        return result

@@ -59,7 +59,8 @@ class Angle(NamedTuple):
     def steepest(self, s: Array, order: int) -> Array:
         """(k,) bound of the modulus of the fourth or fifth derivative on the whole span around each s."""
         most = SEPTIC_MOST[order] * np.abs(np.diff(self.values)) / np.diff(self.at) ** order
-        return np.where(self.even, 0.0, most)[interval_of(self.at, s)]
+        result: Array = np.where(self.even, 0.0, most)[interval_of(self.at, s)]
+        return result
 
     def _within(self, s: Array) -> tuple[Array, Array]:
         """Which span, and how far into it as a fraction."""

@@ -30,12 +30,14 @@ SEPTIC_MOST = {4: 840.0, 5: 10080.0}
 
 def quintic(u: Number) -> Number:
     """S5, (...,) in [0, 1] -> (...,)."""
-    return u**3 * (10 + u * (-15 + 6 * u))
+    result: Number = u**3 * (10 + u * (-15 + 6 * u))
+    return result
 
 
 def septic(w: Number) -> Number:
     """S7, (...,) in [0, 1] -> (...,)."""
-    return w**4 * (35 + w * (-84 + w * (70 - 20 * w)))
+    result: Number = w**4 * (35 + w * (-84 + w * (70 - 20 * w)))
+    return result
 
 
 def turned(u: Array, alpha: Array) -> tuple[Array, Array]:

@@ -210,7 +210,8 @@ def checked_arc_length(s: Array, length: float, order: int) -> Array:
     outside = ~((s >= -slack) & (s <= length + slack))
     if outside.any():
         raise InvalidValue("arc length", float(s[outside].flat[0]), f"a number in [0, {length:.6g}] m")
-    return np.clip(s, 0.0, length)
+    result: Array = np.clip(s, 0.0, length)
+    return result
 
 
 def places(pose_names: Sequence[str]) -> int:

@@ -78,7 +78,8 @@ def _highest_around(used: Array) -> Array:
     highest = np.maximum(np.maximum(around[:, :-2], around[:, 2:]), used)
     bend = np.abs(used[:, :-2] - 2.0 * used[:, 1:-1] + used[:, 2:])
     between = highest + np.concatenate([bend[:, :1], bend, bend[:, -1:]], axis=1) / 8.0  # of a parabola
-    return np.maximum(np.minimum(between + _ROOM, 1.0), used)
+    result: Array = np.maximum(np.minimum(between + _ROOM, 1.0), used)
+    return result
 
 
 def tangent_rows(rows: Rows, jerk: JerkRows, near: Array, middle: Array, margin: float) -> LinearRows:

@@ -47,7 +47,8 @@ class EmergencyStop(Value):
     @property
     def pose(self) -> Array:
         """(n,) where it rests."""
-        return self.motion.ends[1]
+        result: Array = self.motion.ends[1]
+        return result
 
 
 def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float) -> EmergencyStop:

@@ -150,7 +150,8 @@ def _steepest(least: Array, most: Array, box: PathBox, count: int) -> Array:
         lowest, highest = products.min(axis=0), products.max(axis=0)
         rounding = np.maximum(np.abs(lowest), np.abs(highest)).sum(axis=-1) * 2.0**-48
         slope = np.maximum(np.abs(lowest.sum(axis=-1)), np.abs(highest.sum(axis=-1))) + rounding
-    return np.nan_to_num(slope, nan=np.inf, posinf=np.inf)
+    result: Array = np.nan_to_num(slope, nan=np.inf, posinf=np.inf)
+    return result
 
 
 def _without_modulus(part: ca.SX, at_start: float) -> ca.SX:

@@ -25,7 +25,8 @@ class Parts(NamedTuple):
 
     def times(self, timed: TimedMotion) -> Array:
         """(k, 5) of the samples [s]."""
-        return timed.times[self.interval, None] + self._since()
+        result: Array = timed.times[self.interval, None] + self._since()
+        return result
 
     def tool(self, timed: TimedMotion) -> PoseMotion:
         """(k, 5, n) of the samples, the first and the last from inside."""
@@ -83,7 +84,8 @@ def integrals(times: Array, values: Array) -> Array:
     weights = np.full(steps + 1, 2.0)
     weights[1::2] = 4.0
     weights[[0, -1]] = 1.0
-    return np.einsum("nkm,k,n->nm", values, weights / (3 * steps), times[:, -1] - times[:, 0])
+    result: Array = np.einsum("nkm,k,n->nm", values, weights / (3 * steps), times[:, -1] - times[:, 0])
+    return result
 
 
 def way_of(positions: Array) -> float:

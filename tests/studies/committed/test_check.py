@@ -23,8 +23,8 @@ from studies.errors import StudyError
 from studies.stages.pipeline import run
 from studies.stages.proofs import Claim, question_of
 from studies.study_file.locate import study_names
-from tests.sizes import few_or_many
 from studies.study_file.toml_file import read_toml
+from tests.sizes import few_or_many
 from tests.studies.command_line import SMALL, SmallRun, copy_of, linkwright
 from trajectory import write_files
 

@@ -148,11 +148,13 @@ def _tool_rows(path: Path, edges: Array, middle: list[Array], low: Array, high: 
     half = (high - low)[:, None, n:] / 2
 
     def along(vectors: Array) -> Array:
-        return np.einsum("krp,kp->kr", towards, vectors)
+        result: Array = np.einsum("krp,kp->kr", towards, vectors)
+        return result
 
     def radius(order: int) -> Array:
         part = slice((order - 1) * n, (order - 1) * n + count)
-        return (np.abs(towards) * half[..., part]).sum(axis=-1)
+        result: Array = (np.abs(towards) * half[..., part]).sum(axis=-1)
+        return result
 
     (_, ends) = path.evaluate(edges, 1)
     a, b = along(tangent), along(bend)

@@ -80,6 +80,8 @@ def _used_at(x: float, w: float, z: float, first: int, shares: Array, rows: Rows
 def _peak(values: Array) -> float:
     i = int(np.argmax(values))
     if i in (0, values.size - 1):
-        return values[i]
+        result: float = values[i]
+        return result
     rise, bend = values[i + 1] - values[i - 1], 2.0 * values[i] - values[i + 1] - values[i - 1]
-    return values[i] + (rise * rise / (8.0 * bend) if bend > 0.0 else 0.0)
+    result: float = values[i] + (rise * rise / (8.0 * bend) if bend > 0.0 else 0.0)
+    return result

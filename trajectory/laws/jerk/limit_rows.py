@@ -58,7 +58,8 @@ class Rows(NamedTuple):
     @property
     def tight_count(self) -> int:
         """How many numbers tighten the rows of an interval: one for each force, jerk, x and tool."""
-        return self.force.shape[1] + self.jerk.shape[1] + 1 + self.tool.shape[1]
+        result: int = self.force.shape[1] + self.jerk.shape[1] + 1 + self.tool.shape[1]
+        return result
 
 
 def smoothstep(u: Array) -> tuple[Array, Array, Array, Array]:
@@ -70,7 +71,8 @@ def smoothstep(u: Array) -> tuple[Array, Array, Array, Array]:
 def progress_at(share: Array) -> Array:
     """u (k,) where S5 is so much, by bisection."""
     low, high = bisected(lambda u: smoothstep(u)[0] < share, np.zeros_like(share), np.ones_like(share), _FINEST)
-    return 0.5 * (low + high)
+    result: Array = 0.5 * (low + high)
+    return result
 
 
 def stations(knots: Array) -> Array:
@@ -152,7 +154,8 @@ def _usual_rate(limits: Limits, along: Along) -> float:
     """About the rate of a motion that keeps the limits of speed and jerk [1/s]."""
     most = min(float(cap.most.min()) for cap in limits.constraints(Cap, along))
     jerk = np.abs(_third(limits, along)[..., 2])
-    return min(most**0.5, float(jerk.max()) ** (-1 / 3))
+    result: float = min(most**0.5, float(jerk.max()) ** (-1 / 3))
+    return result
 
 
 def _friction(robot: Mechanism, constant: Array, first: Array) -> tuple[Array, Array]:
@@ -192,4 +195,5 @@ def uniform_rate(rows: Rows, most: float = 1.0) -> float:
         reached = (root >= 0.0) & (denominator > 0.0)
         least = min(least, float(np.min(2.0 * room[reached] / denominator[reached], initial=math.inf)))
     jerk, tool = np.abs(rows.jerk[..., 2]).max(), rows.tool[..., 2].max(initial=0.0)
-    return min(least, float(jerk) ** (-1 / 3), math.inf if tool == 0.0 else float(tool) ** -0.25)
+    result: float = min(least, float(jerk) ** (-1 / 3), math.inf if tool == 0.0 else float(tool) ** -0.25)
+    return result

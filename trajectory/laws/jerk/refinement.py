@@ -220,7 +220,8 @@ def _started(start: SquaredRate, kept: Kept) -> Array | None:
     """
     share = keeping(kept.sizes, kept.rows, kept.tight, start.values)
     if share > _LITTLE:
-        return share * start.values
+        result: Array | None = share * start.values
+        return result
     loose = _HELD * float((_uses(start, kept.rows) - kept.tight).max()) + _HELD - 1.0
     y, duals = start.values.copy(), _Duals(_no_duals(kept), np.zeros(kept.mean_tight.size))
     status, *_ = search(kept, y, *duals, _INSIDE, 0.0, _DRAWING, loose, _PRICE)

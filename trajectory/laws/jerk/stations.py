@@ -146,4 +146,5 @@ def keeping(sizes: Array, rows: Rows, tight: Array, y: Array) -> float:
 @compiled
 def row_count(rows: Rows) -> int:
     """At each station: both sides of forces and jerks, x at most, tool, and x above 0."""
-    return 2 * rows.force.shape[1] + 2 * rows.jerk.shape[1] + 1 + rows.tool.shape[1] + 1
+    result: int = 2 * rows.force.shape[1] + 2 * rows.jerk.shape[1] + 1 + rows.tool.shape[1] + 1
+    return result

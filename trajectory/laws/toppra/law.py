@@ -126,7 +126,8 @@ def _used(rows: PathRows, inside: PathRows, x: Array, share: float) -> Array:
     used = np.max(
         [np.abs(without + f).max(axis=-1, initial=0.0) for f in (rows.friction[:-1], rows.friction[1:])], axis=0
     )
-    return np.maximum(used, there[:, 0] / inside.highest)
+    result: Array = np.maximum(used, there[:, 0] / inside.highest)
+    return result
 
 
 def _unsettled(rows: PathRows, middle: PathRows, x: Array) -> Array:

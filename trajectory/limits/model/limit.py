@@ -81,7 +81,8 @@ class Limit(ABC):
         Raises:
             LimitsExceeded: no factor does.
         """
-        return max(1.0, peak ** (1 / self.pace_power))
+        result: float = max(1.0, peak ** (1 / self.pace_power))
+        return result
 
     def holding_torque(self, limits: LimitValues, count: int) -> Array | None:  # noqa: ARG002
         """(count,) what it leaves to the drives at rest [N m or N]; None where it limits no torque."""
