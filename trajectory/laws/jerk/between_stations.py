@@ -79,9 +79,9 @@ def _used_at(x: float, w: float, z: float, first: int, shares: Array, rows: Rows
 @compiled
 def _peak(values: Array) -> float:
     i = int(np.argmax(values))
-    if i in (0, values.size - 1):
-        result: float = values[i]
-        return result
-    rise, bend = values[i + 1] - values[i - 1], 2.0 * values[i] - values[i + 1] - values[i - 1]
-    result: float = values[i] + (rise * rise / (8.0 * bend) if bend > 0.0 else 0.0)
+    result: float = values[i]
+    if 0 < i < values.size - 1:
+        rise, bend = values[i + 1] - values[i - 1], 2.0 * values[i] - values[i + 1] - values[i - 1]
+        if bend > 0.0:
+            result += rise * rise / (8.0 * bend)
     return result
