@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 
 import pytest
@@ -13,8 +12,8 @@ from kinematics import InvalidValue
 from studies.cli.app import app
 from studies.errors import StudyError
 from studies.results.output_folder import LIST
-from studies.study_file.trajectory_tables import FILES
 from tests.studies.cli.test_command_line import SMALL
+from trajectory import LAWS
 from trajectory.drive_files.formats import FORMATS
 
 DRIVE = "[trajectory.drive]\nincrements = 1048576\nencoder_gear = 9\naxes = ['X', 'Y', 'Z', 'A']\n"
@@ -38,14 +37,14 @@ def asking(files: str, more: str = "") -> str:
     return SMALL.replace("period = 0.002", f"period = 0.002\nfiles = {files}") + more
 
 
-def test_the_study_s_formats_are_the_registry_s_and_the_help_names_them() -> None:
-    assert tuple(FORMATS) == FILES
-    shown = CliRunner().invoke(app, ["trajectory", "--help"], env={"COLUMNS": "200", "TERM": "dumb"}).stdout
-    assert set(FORMATS) <= set(re.findall(r"\w+", shown))
+def test_list_names_the_registrys_formats_and_laws() -> None:
+    listed = json.loads(CliRunner().invoke(app, ["list", "--json"]).stdout)
+    assert listed["formats"] == {name: form.title for name, form in FORMATS.items()}
+    assert listed["laws"] == {name: law.title for name, law in LAWS.items()}
 
 
 def test_a_study_gets_the_files_it_asks_for(tmp_path: Path) -> None:
-    said = trajectory(tmp_path, asking(json.dumps(FILES), DRIVE))
+    said = trajectory(tmp_path, asking(json.dumps(list(FORMATS)), DRIVE))
     written = {file.name for file in (tmp_path / "out").iterdir()}
     ends = ("csv", "ros2.yaml", "ros2.mcap", "cia402.csv", "zaber.csv", "xps.trj", "pmac")
     assert written - {LIST} == {f"cycle.{end}" for end in ends} == {Path(name).name for name in said["files"]}

@@ -43,11 +43,11 @@ def test_where_a_search_does_not_converge_a_motion_rests_in_a_tiny_corner(
 ) -> None:
     path, parts = cornered(robot, 1e-7), []
 
-    def on_halves_alone(problem: refinement.Problem, intervals: int) -> refinement.Answer:
-        parts.append(problem.path)
-        if problem.path is path:
-            refinement.refuse(*problem, intervals)
-        return refinement.fastest(problem, intervals)
+    def on_halves_alone(task: refinement.TimingTask, intervals: int) -> refinement.Answer:
+        parts.append(task.path)
+        if task.path is path:
+            refinement.refuse(*task, intervals)
+        return refinement.fastest(task, intervals)
 
     monkeypatch.setattr("trajectory.laws.jerk.law.fastest", on_halves_alone)
     found = jerk_limited(robot, path, LIMITS, 0.5)

@@ -130,7 +130,7 @@ def _row_steps(
 
 
 @compiled
-def search(
+def descend(
     kept: Kept,
     y: Array,
     dual: Array,

@@ -12,7 +12,7 @@ from trajectory.laws import LAWS
 from trajectory.laws.at_rest import require_possible
 from trajectory.laws.jerk.limit_rows import PARTS, smoothstep
 from trajectory.laws.jerk.motion import law_in_time
-from trajectory.laws.jerk.refinement import Answer, Problem, fastest
+from trajectory.laws.jerk.refinement import Answer, TimingTask, fastest
 from trajectory.laws.jerk.refusal import refuse
 from trajectory.limits import Limits
 from trajectory.motions import TimedPath, TimeLaw
@@ -51,44 +51,44 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     require_poses_of(robot, path)
     require_smooth(path)
     require_possible(robot, path, limits, payload, np.linspace(0.0, path.length, _CHECKED + 1))
-    problem = Problem(robot, path, limits, payload)
+    task = TimingTask(robot, path, limits, payload)
     failed: TimingFailed | None = None
     laws = []
     try:
-        laws.append(_passing(problem, intervals))
+        laws.append(_passing(task, intervals))
     except TimingFailed as error:
         failed = error
     for share in _SHORT:
-        if (share == _SHORT[0] or not laws) and (law := _resting(problem, intervals, share)) is not None:
+        if (share == _SHORT[0] or not laws) and (law := _resting(task, intervals, share)) is not None:
             laws.append(law)
     if failed is not None and not laws:
         raise failed
     return TimedPath(path, min(laws, key=lambda law: law.duration))
 
 
-def _passing(problem: Problem, intervals: int) -> TimeLaw:
+def _passing(task: TimingTask, intervals: int) -> TimeLaw:
     """The law that rests at both ends alone."""
-    answer = fastest(problem, intervals)
-    length = problem.path.length
+    answer = fastest(task, intervals)
+    length = task.path.length
     law = law_in_time(answer.motion, length, answer.unit, _per_jerk(answer, length))
     if law is None:
-        refuse(*problem, answer.sizes.size)
+        refuse(*task, answer.sizes.size)
     return law
 
 
-def _resting(problem: Problem, intervals: int, share: float) -> TimeLaw | None:
+def _resting(task: TimingTask, intervals: int, share: float) -> TimeLaw | None:
     """The law that rests in the middle of each run of pieces that are so short a share of the path too.
 
     There a rest costs next to nothing, and the scales of what is left are closer. None where there are no such pieces,
     or no such law.
     """
-    path = problem.path
+    path = task.path
     rests = _middles(np.array(path.knots), share * path.length)
     if not rests:
         return None
     parts = [Part(path, a, b) for a, b in pairwise((0.0, *rests, path.length))]
     try:
-        return TimeLaw.joined([_passing(problem._replace(path=part), intervals) for part in parts])
+        return TimeLaw.joined([_passing(task._replace(path=part), intervals) for part in parts])
     except (TimingFailed, PathBeyondLimit):
         return None
 

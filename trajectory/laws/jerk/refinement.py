@@ -14,7 +14,7 @@ import numpy as np
 
 from kinematics import Array, Mechanism, bisected
 from trajectory.laws.jerk.between_stations import used
-from trajectory.laws.jerk.interior_point import SOLVED, Kept, search
+from trajectory.laws.jerk.interior_point import SOLVED, Kept, descend
 from trajectory.laws.jerk.limit_rows import PARTS, Rows, rows_of, uniform_rate, weight_use
 from trajectory.laws.jerk.mesh import first_mesh, next_mesh, piece_edges
 from trajectory.laws.jerk.motion import SquaredRate
@@ -47,7 +47,7 @@ _PRICE = 1e3  # of what loosens the forces, in units of the slow motion's time
 _SLOWER = 0.98  # of the rate that just keeps every row
 
 
-class Problem(NamedTuple):
+class TimingTask(NamedTuple):
     """What is asked, as `jerk_limited`."""
 
     robot: Mechanism
@@ -88,17 +88,17 @@ class _Found(NamedTuple):
     converged: bool
 
 
-def fastest(problem: Problem, intervals: int) -> Answer:
+def fastest(task: TimingTask, intervals: int) -> Answer:
     """The fastest motion on so many intervals, or on as many as it needs.
 
     Raises:
         TimingFailed: no motion keeps the limits, and why; or the search did not converge.
     """
-    edges = piece_edges(problem.path)
+    edges = piece_edges(task.path)
     asked = max(intervals, _IN_PIECE * (edges.size - 1))
-    found, best, settled = _first(problem, first_mesh(edges, asked // _COARSE)), None, False
+    found, best, settled = _first(task, first_mesh(edges, asked // _COARSE)), None, False
     for _ in range(_DOUBLINGS + 1):
-        finer = _on_finer_knots(problem, edges, found, asked)
+        finer = _on_finer_knots(task, edges, found, asked)
         if finer is None:
             break
         before, found, asked = found, finer, 2 * asked
@@ -107,7 +107,7 @@ def fastest(problem: Problem, intervals: int) -> Answer:
                 break  # so fine that the search fails: the knots before were fine enough
             continue
         answer = _tightened(found.answer, found.duals)
-        slowed = _slowed(problem, answer)
+        slowed = _slowed(task, answer)
         if slowed is None:
             continue
         if best is None or slowed.time < best.time:
@@ -118,18 +118,18 @@ def fastest(problem: Problem, intervals: int) -> Answer:
             if left <= _STANDS or asked > _MOST:
                 break
     if best is None:
-        refuse(*problem, found.answer.sizes.size)
+        refuse(*task, found.answer.sizes.size)
     return best
 
 
-def _slowed(problem: Problem, answer: Answer) -> Answer | None:
+def _slowed(task: TimingTask, answer: Answer) -> Answer | None:
     """The answer at the largest share of its rate that keeps the rows of the path between the stations too.
 
     None where no share does, and the answer itself exceeds a row by more than a little: where the drives cannot hold
     the weight, only a motion at speed keeps them.
     """
     between = answer.motion.finer(_BETWEEN)
-    rows = _in_unit(rows_of(*problem, between.knots), answer.unit)
+    rows = _in_unit(rows_of(*task, between.knots), answer.unit)
 
     def most(rate: float) -> float:
         return float(_uses(between._replace(values=between.values * rate**2), rows).max())
@@ -160,23 +160,23 @@ def _to_be_gained(coarse: Answer, fine: Answer) -> float:
     return max(saved, 0.0) / ((fine.sizes.size / coarse.sizes.size) ** 2 - 1.0)
 
 
-def _on_finer_knots(problem: Problem, edges: Array, found: _Found, intervals: int) -> _Found | None:
+def _on_finer_knots(task: TimingTask, edges: Array, found: _Found, intervals: int) -> _Found | None:
     before = found.answer
     over = np.clip(_uses(before.motion, before.rows).max(axis=1) - 1.0, 0.0, 1.0)
     knots = next_mesh(edges, before.motion, over, intervals)
-    rows = _in_unit(rows_of(*problem, knots), before.unit)
+    rows = _in_unit(rows_of(*task, knots), before.unit)
     start = before.motion.on(knots)
     return _searched(start, rows, before.unit, found.duals.means, _NEAR, _CLOSELY)
 
 
-def _first(problem: Problem, knots: Array) -> _Found:
+def _first(task: TimingTask, knots: Array) -> _Found:
     """On few knots, from the motion of one rate, which the forces may have to be loosened for."""
-    rows = rows_of(*problem, knots)
+    rows = rows_of(*task, knots)
     start = SquaredRate(knots, np.tile([1.0, 0.0], knots.size))
     unit = 1.0 / (_SLOWER * uniform_rate(rows, max(1.0, _HELD * weight_use(rows))))
     found = _searched(start, _in_unit(rows, unit), unit, np.zeros(rows.mean.shape[1]), _FAR, _ROUGHLY)
     if found is None:
-        refuse(*problem, knots.size - 1)
+        refuse(*task, knots.size - 1)
     return found
 
 
@@ -197,7 +197,7 @@ def _searched(
         return None
     for pressed in (barrier, *_PRESSED):
         duals, found = _Duals(_no_duals(kept), means.copy()), y.copy()
-        status, _, time = search(kept, found, *duals, pressed, tolerance, _STEPS, 0.0, 0.0)
+        status, _, time = descend(kept, found, *duals, pressed, tolerance, _STEPS, 0.0, 0.0)
         if status == SOLVED:
             break
     motion = SquaredRate(start.knots, found)
@@ -224,7 +224,7 @@ def _started(start: SquaredRate, kept: Kept) -> Array | None:
         return result
     loose = _HELD * float((_uses(start, kept.rows) - kept.tight).max()) + _HELD - 1.0
     y, duals = start.values.copy(), _Duals(_no_duals(kept), np.zeros(kept.mean_tight.size))
-    status, *_ = search(kept, y, *duals, _INSIDE, 0.0, _DRAWING, loose, _PRICE)
+    status, *_ = descend(kept, y, *duals, _INSIDE, 0.0, _DRAWING, loose, _PRICE)
     if status == SOLVED:
         return y
     return share * start.values if share else None
@@ -260,7 +260,7 @@ def _tightened(answer: Answer, duals: _Duals) -> Answer:
         kept = kept._replace(tight=np.maximum(tight, floor))
         if (y := _started(motion, kept)) is None:
             break
-        status, _, time = search(kept, y, *duals, _SAME, _CLOSELY, _STEPS, 0.0, 0.0)
+        status, _, time = descend(kept, y, *duals, _SAME, _CLOSELY, _STEPS, 0.0, 0.0)
         if status != SOLVED:
             break
         motion = SquaredRate(motion.knots, y)
