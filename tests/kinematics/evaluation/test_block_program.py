@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from kinematics import GoughStewart, Heli4, Peppermill, Redundant3T1R
 from kinematics.evaluation.block_graph import Block
 from kinematics.evaluation.block_interpreter import bulk, evaluate
-from kinematics.evaluation.program import Op, Program, replay
+from kinematics.evaluation.program import Op, Program, run_through
 from kinematics.evaluation.sine_cosine import LIMIT
 from kinematics.mathematics.symbolic_linear_algebra import adjugate, determinant
 
@@ -43,7 +43,7 @@ def run(expression, table):
 def plainly(expression, table):
     """Each operation of CasADi's own instructions in numpy, none left out."""
     program = Program.of(ca.Function("f", [ALL], [expression]))
-    return np.asarray(replay(program, list(table.T))[0])
+    return np.asarray(run_through(program, list(table.T))[0])
 
 
 @pytest.mark.parametrize("block", Block, ids=lambda b: b.name)
@@ -99,7 +99,7 @@ def test_any_expression_keeps_its_value_but_for_rounding(expression):
     program = Program.of(ca.Function("f", [ALL], [expression]))
     operations = {op: partial(_with_error, op) for op in _NUMPY}
     with np.errstate(all="ignore"):
-        value, error = _pair(replay(program, [(column, 0.0 * column) for column in table.T], operations)[0])
+        value, error = _pair(run_through(program, [(column, 0.0 * column) for column in table.T], operations)[0])
         found = run(expression, table)
         usable = np.isfinite(value) & np.isfinite(error)
         assert (np.abs(found - value) <= error)[usable].all()

@@ -9,7 +9,7 @@ import pytest
 from kinematics import Heli4, InvalidValue
 from kinematics.evaluation import block_interpreter, threads
 from kinematics.evaluation.block_interpreter import BLOCK, bulk, evaluate
-from kinematics.evaluation.program import Op, Program, UnknownOperation, replay
+from kinematics.evaluation.program import Op, Program, UnknownOperation, run_through
 from tests.kinematics.by_hand import cylinder
 
 X, Y = ca.SX.sym("x"), ca.SX.sym("y")
@@ -88,7 +88,7 @@ def test_replay_over_symbols_gives_the_function_back():
     expressions = [ca.vertcat(ca.sin(X) / Y, ca.fmin(X, Y) - 2 * X, ca.sqrt(ca.fabs(Y))), ca.horzcat(X, X * Y)]
     function = ca.Function("f", [ca.vertcat(X, Y)], expressions)
     program = Program.of(function)
-    again = ca.Function("g", [ca.vertcat(X, Y)], [ca.vertcat(*replay(program, [X, Y]))])
+    again = ca.Function("g", [ca.vertcat(X, Y)], [ca.vertcat(*run_through(program, [X, Y]))])
     at = np.array([0.7, -1.3])
     expected = np.concatenate([part.reshape(-1) for part in evaluate(bulk(function), at)])
     np.testing.assert_allclose(again(at).full()[:, 0], expected, rtol=1e-15)

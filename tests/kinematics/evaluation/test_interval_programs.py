@@ -9,7 +9,7 @@ import pytest
 from kinematics import GoughStewart, Heli4, InvalidValue, Mechanism, Peppermill, Redundant3T1R
 from kinematics.evaluation.box_program import BoxProgram
 from kinematics.evaluation.interval_interpreter import enclose
-from kinematics.evaluation.program import Program, replay
+from kinematics.evaluation.program import Program, run_through
 from tests.arb import OPERATIONS, arb
 
 ROBOTS = [Heli4(), Redundant3T1R(), Peppermill(), GoughStewart()]
@@ -36,7 +36,7 @@ def test_a_program_encloses_arbitrary_precision_at_points_of_random_boxes(robot:
             middle[k] + half[k] * rng.uniform(-1, 1, middle.shape[1]), *(middle[k] + s * half[k] for s in (-1, 1))
         )
         inputs = [arb(float(v)) for v in (*point, *robot.geometry.vector())]
-        for column, value in enumerate(replay(program, inputs, OPERATIONS)):
+        for column, value in enumerate(run_through(program, inputs, OPERATIONS)):
             assert not (arb(value) < arb(low[k, column])), f"seed 11, box {k}, output {column}"
             assert not (arb(value) > arb(high[k, column])), f"seed 11, box {k}, output {column}"
 
