@@ -13,10 +13,9 @@ pytestmark = pytest.mark.long
 PROVE = """
 import time
 from pathlib import Path
-from studies.certify import prove_claims, question_of
-from studies.load import load_study
-from studies.study_file.toml_file import read_toml
-from studies.setup import robot_of
+from studies.stages import prove_claims, question_of
+from studies.building import load_study, robot_of
+from studies.study_file import read_toml
 study = load_study(read_toml(Path("studies/heli4/study.toml")))
 question = question_of(study, robot_of(study))
 claims = [claim for claim in question.claims() if claim.margin == "J_q"]
