@@ -61,7 +61,6 @@ from kinematics.robots.par4 import Par4
 from kinematics.robots.peppermill import Peppermill
 from kinematics.robots.planar import Planar3PRR, Planar3RPR, Planar3RRR
 from kinematics.robots.redundant_3t1r import Redundant3T1R
-from kinematics.robots.shared import RodLevel
 
 __all__ = [
     "ARCHITECTURES",
@@ -105,7 +104,6 @@ __all__ = [
     "Planar3RRR",
     "Program",
     "Redundant3T1R",
-    "RodLevel",
     "SelfMotion",
     "SingularArchitecture",
     "ToShow",

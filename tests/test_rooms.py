@@ -79,6 +79,21 @@ def test_what_verifies_a_motion_knows_nothing_of_what_made_it() -> None:
     assert known == {"trajectory.verification", *models}
 
 
+def test_what_verifies_a_motion_asks_a_limit_for_its_use_alone() -> None:
+    """Of what laws use too it imports what a path, a motion and a limit are: no kind of path, no constraint."""
+    known = {
+        "trajectory.paths": {"Path", "PathBox", "require_poses_of"},
+        "trajectory.motions": {"InTime", "Motion", "PoseMotion", "TimedMotion", "motion_of"},
+        "trajectory.limits": {"InstantLimit", "Limit", "Limits", "MeanSquareLimit", "Use", "mean_squares", "uses"},
+    }
+    found: dict[str, set[str]] = {}
+    for name in (m for m in MODULES if room_of(m) == "trajectory.verification" and not is_door(m)):
+        for node in ast.walk(ast.parse(MODULES[name].read_text())):
+            if isinstance(node, ast.ImportFrom) and node.module in known:
+                found.setdefault(node.module, set()).update(alias.name for alias in node.names)
+    assert found == known
+
+
 def test_no_law_imports_what_verifies_it() -> None:
     laws = [room for room in rooms() if room.startswith("trajectory.laws")]
     assert len(laws) > 3

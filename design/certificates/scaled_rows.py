@@ -27,7 +27,7 @@ class ScaledRows:
             self._matrix = bulk(ca.Function("matrix", [model.pose], [ca.densify(matrix)]))
 
     def program(self, *outputs: ca.SX) -> BoxProgram:
-        """To be run on `with_scaling` of boxes."""
+        """Of boxes, with the numbers of `scaling` beside their bounds."""
         function = ca.Function("rows", self.symbols, ca.cse([ca.densify(o) for o in outputs]))
         return BoxProgram.of(Program.of(function), self._fixed)
 

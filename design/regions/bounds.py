@@ -26,5 +26,5 @@ def interval(name: str, value: object) -> tuple[float, float]:
 
 def number(value: object) -> float:
     """The value as a float; NaN where it is no number of a usual size."""
-    number = float(value) if isinstance(value, Real) and not isinstance(value, bool) else math.nan
-    return number if abs(number) <= LARGEST else math.nan
+    found = float(value) if isinstance(value, Real) and not isinstance(value, bool) else math.nan
+    return found if abs(found) <= LARGEST else math.nan

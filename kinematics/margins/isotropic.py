@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import casadi as ca
 
@@ -24,21 +24,28 @@ from kinematics.model import (
 _REGULAR = 1e-6  # what det M, about 1 in the middle of a box, must exceed
 
 
-class Speed(Margin):
+class _Isotropic(Margin):
+    """One of the two radii, the smallest of what each actuator alone would allow."""
+
+    of_jacobians = True
+    place: ClassVar[int]  # in `isotropic` and `isotropic_components`
+
+    def components(self, robot: Mechanism, measure: Measure) -> ca.SX:
+        """One an actuator."""
+        return isotropic_components(robot.homogeneous_jacobian(measure.length))[self.place]
+
+    def smallest(self, robot: Mechanism, measure: Measure) -> ca.SX:
+        """With one root for all."""
+        return isotropic(robot.homogeneous_jacobian(measure.length))[self.place]
+
+
+class Speed(_Isotropic):
     """v_w, for unit speed of the actuators."""
 
     name = "v_w"
     unit = "m/s for unit joint speed"
     words = "worst isotropic speed for unit joint speed"
-    of_jacobians = True
-
-    def components(self, robot: Mechanism, measure: Measure) -> ca.SX:
-        """One an actuator."""
-        return isotropic_components(robot.homogeneous_jacobian(measure.length))[0]
-
-    def smallest(self, robot: Mechanism, measure: Measure) -> ca.SX:
-        """With one root for all."""
-        return isotropic(robot.homogeneous_jacobian(measure.length))[0]
+    place = 0
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
         """`_Rows.speeds` for a unit speed."""
@@ -47,24 +54,16 @@ class Speed(Margin):
         return ToShow(ca.vertcat(*_Rows.of(robot, claim.measure.length).speeds(1, claim.bound)), ca.SX(0, 0))
 
 
-class Force(Margin):
+class Force(_Isotropic):
     """f_w, for unit effort of the actuators."""
 
     name = "f_w"
     unit = "N for unit joint effort"
     words = "worst isotropic force for unit joint effort"
-    of_jacobians = True
-
-    def components(self, robot: Mechanism, measure: Measure) -> ca.SX:
-        """One an actuator."""
-        return isotropic_components(robot.homogeneous_jacobian(measure.length))[1]
-
-    def smallest(self, robot: Mechanism, measure: Measure) -> ca.SX:
-        """With one root for all."""
-        return isotropic(robot.homogeneous_jacobian(measure.length))[1]
+    place = 1
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
-        """`_Rows.forces` for a unit effort."""
+        """`_Rows.forces` for a unit effort. Where b_i = 0 actuator i holds any force: the others make f_w."""
         if not positive:
             return super().to_show(robot, claim, inside, positive)
         rows = _Rows.of(robot, claim.measure.length)
@@ -87,7 +86,7 @@ class Fvi(Margin):
         return fvi(robot.homogeneous_jacobian(measure.length), measure.fvi)
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
-        """`_Rows.speeds` and `_Rows.forces`."""
+        """`_Rows.speeds` and `_Rows.forces`: b_i = 0 breaks speed i, as a_i = 0 would break det A."""
         if not positive:
             return super().to_show(robot, claim, inside, positive)
         given, rows = claim.measure.fvi, _Rows.of(robot, claim.measure.length)
@@ -135,7 +134,6 @@ class _Rows(NamedTuple):
         With J = J_mw S, M = J^T J and det M > 0 it is p_i = S adj(M) J^T e_i / det M, so
         tau_max^2 det(M)^2 - c^2 |S adj(M) J^T e_i|^2 >= 0. S comes from the QR factors in the middle of the box, so M
         is nearly the identity. A square J_mw needs no M: with A S in place of J, p_i = b_i S adj(A S) e_i / det(A S).
-        Then b_i = 0 breaks speed i, as a_i = 0 would break det A.
         """
         scaled = self.matrix @ self.scaling
         count, square = scaled.shape[0], scaled.shape[0] == scaled.shape[1]

@@ -15,7 +15,7 @@ from matplotlib.patches import Circle, Patch
 from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 
-from design import Cylinder, Map, boundary
+from design import Cylinder, Index, Map, boundary
 from kinematics import Array
 from studies.report.plots import STYLE, png
 from studies.stages import MapOutcome, angles_of
@@ -33,7 +33,7 @@ def map_picture(outcome: MapOutcome) -> bytes:
         scale = np.array([180.0 / np.pi if name in angles else 1.0 for name in request.section.axes])
         figure = Figure(figsize=(2.6 + _panel_width(chart, angles), 4.8), layout="constrained")
         axes = figure.subplots()
-        draw_contours(figure, axes, chart, request.index.name, scale, request.bound)
+        draw_contours(figure, axes, chart, _label(request.index), scale, request.bound)
         drawn: list[Patch | Line2D] = [draw_boundary(axes, outcome.found.boundary, scale, bound_label(outcome))]
         if outcome.certified is not None:
             drawn += _draw_certified(axes, outcome, scale)
@@ -41,6 +41,10 @@ def map_picture(outcome: MapOutcome) -> bytes:
         figure.suptitle(_title(outcome), fontsize=9)
         figure.legend(handles=drawn, loc="outside lower center", ncols=1 if len(drawn) < 3 else 2, frameon=False)
         return png(figure)
+
+
+def _label(index: Index) -> str:
+    return f"{index.name} [{index.unit}]" if index.unit else index.name
 
 
 def _panel_width(chart: Map, angles: Sequence[str]) -> float:
@@ -134,6 +138,7 @@ def _draw_certified(axes: Axes, outcome: MapOutcome, scale: Array) -> list[Patch
 
 
 def _title(outcome: MapOutcome) -> str:
+    """What is mapped, where, and its figures."""
     request, figures = outcome.request, outcome.found.figures
     section, angles = request.section, angles_of(request.robot)
     shown = []
@@ -143,7 +148,7 @@ def _title(outcome: MapOutcome) -> str:
     worst = section.rest(request.robot.pose_names)
     if worst:
         shown.append(f"worst over {', '.join(worst)}")
-    first = f"{type(request.robot).__name__}, {request.index.name}" + (f": {'; '.join(shown)}" if shown else "")
+    first = f"{type(request.robot).__name__}, {request.index.words}" + (f": {'; '.join(shown)}" if shown else "")
     if figures.area == 0.0:
         return f"{first}\n{outcome.none_seen}"
     second = f"area {figures.area:.4g} {outcome.area_unit}, mean {figures.mean:.4g}, deviation {figures.deviation:.3g}"

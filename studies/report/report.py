@@ -19,10 +19,6 @@ from trajectory import motion_of
 Pictures = list[tuple[str, bytes]]  # title and PNG
 _STATED = ("path", "limit", "payload", "period", "assumptions", "inertia")
 _MAPPED = ("fvi", "internal_determinant")
-_TITLES = {
-    "fvi": "FVI, worst over the other coordinates",
-    "internal_determinant": "Internal determinant (Heli4: |(59)| over d^4 l^4), worst over the other coordinates",
-}
 
 
 def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
@@ -116,7 +112,8 @@ def pictures_of(outcome: Outcome) -> Pictures:
         sections = {
             label: plots.section_of(outcome.problem, robot, outcome.region, margin) for label, robot in robots.items()
         }
-        pictures.append((_TITLES[margin], plots.map_picture(sections, margin, bounds.get(margin))))
+        title = f"{outcome.robot.margins[margin].words}; the worst over the other coordinates"
+        pictures.append((title[0].upper() + title[1:], plots.map_picture(sections, margin, bounds.get(margin))))
     return pictures + (_motion_pictures(outcome.timing) if outcome.timing else [])
 
 

@@ -18,52 +18,52 @@ class ApproachTable(StudyTable):
     """What the joints may do on the jerk-limited move from home to the cycle's start."""
 
     speed: Annotated[PerJoint, Key("a speed > 0, or one a joint", Dimension.JOINT_SPEED)]
-    """Of the joints."""
+    """The largest speed of the joints."""
     acceleration: Annotated[PerJoint, Key("a number > 0, or one a joint (rad/s^2, or m/s^2)")]
-    """Of the joints."""
+    """The largest acceleration of the joints."""
     jerk: Annotated[PerJoint, Key("a number > 0, or one a joint (rad/s^3, or m/s^3)")]
-    """Of the joints."""
+    """The largest jerk of the joints."""
 
 
 class DriveTable(StudyTable):
     """What the drive files need of the machine; a value for all axes, or one an axis."""
 
     axes: Annotated[Annotated[tuple[Name, ...], Field(min_length=1)] | None, Key("a list of names, one a joint")] = None
-    """Each format's own where None."""
+    """The names of the axes. None takes each format's own."""
     increments: Annotated[
         Increments | Annotated[tuple[Increments, ...], Field(min_length=1)] | None,
         Key("a whole number > 0, or one a joint (in a turn of the encoder, or in a metre on a rail)"),
     ] = None
-    """Of the encoder; `cia402` needs it."""
+    """The increments of the encoder. The format `cia402` needs them."""
     encoder_gear: Annotated[
         float | Annotated[tuple[float, ...], Field(min_length=1)],
         Key("a number other than 0, or one a joint (turns of the encoder for one of the joint)"),
     ] = 1.0
-    """Negative where it counts the other way."""
+    """The gear between joint and encoder. It is negative where the encoder counts the other way."""
 
 
 class TrajectoryTable(StudyTable):
     """How the cycle is timed, and how its set-points are sampled."""
 
     law: Annotated[str, one_of(LAWS), Key("one of", choices=tuple(LAWS))] = "jerk"
-    """How it is timed; `toppra` keeps no jerk limit, `free` finds the path too."""
+    """The timing law. `toppra` keeps no jerk limit; `free` finds the path too."""
     grid: Annotated[int, Field(ge=1000, le=1_000_000), Key("a whole number from 1000 to 1000000")] = 2000
-    """Points along the path, at first: the law `toppra` adds what it needs."""
+    """The number of points along the path at first. The law `toppra` adds those that it needs."""
     period: Annotated[Positive, Field(le=1.0), Key("a time > 0, at most 1 (s)")] = 0.001
-    """Of the set-points [s]."""
+    """The time between two set-points [s]."""
     cycle: Annotated[CycleTable | None, table_of(CycleTable)] = None
-    """What is travelled, or a path."""
+    """The cycle to travel, if there is no path."""
     path: Annotated[WaypointPathTable | None, Field(validate_default=True), table_of(WaypointPathTable)] = None
-    """What is travelled, or a cycle."""
+    """The path to travel, if there is no cycle."""
     limits: Annotated[LimitsTable, table_of(LimitsTable)]
     """What the drives and the tool may do."""
     approach: Annotated[ApproachTable | None, table_of(ApproachTable)] = None
-    """The move from home to the start; None leaves it out."""
+    """The move from home to the start. None leaves it out."""
     files: Annotated[
         Annotated[tuple[Annotated[str, one_of(FORMATS)], ...], Field(min_length=1)],
         Key("a list out of", choices=tuple(FORMATS)),
     ] = ("csv",)
-    """Formats of the set-points."""
+    """The formats of the set-points' files."""
     drive: Annotated[DriveTable, table_of(DriveTable)] = DriveTable()
     """What the drive files need of the machine."""
 

@@ -27,7 +27,7 @@ def main() -> None:
 def tables() -> str:
     """Markdown: the keys of each table of the file, then those that only a mechanism knows."""
     parts = [_section(heading, model) for heading, model in [("At the top", Study), *sections(Study, ())]]
-    return "\n".join([*parts, _of_mechanisms()])
+    return "\n".join([*parts, _of_mechanisms(), _margins()])
 
 
 def sections(model: type[BaseModel], path: tuple[str, ...]) -> Iterator[tuple[str, type[BaseModel]]]:
@@ -88,6 +88,13 @@ def _of_mechanisms() -> str:
         own = [_named(keys[table]) for table in ("geometry", "inertia", "ranges")]
         lines.append(f"| {' | '.join([name, ', '.join(kind.pose_names), *own, ', '.join(kind.margins)])} |")
     return "\n".join(lines) + "\n"
+
+
+def _margins() -> str:
+    """Every margin of any mechanism, in its own words."""
+    margins = {name: margin for kind in MECHANISMS.values() for name, margin in kind.margins.items()}
+    rows = [f"| `{name}` | {margin.unit} | {margin.words} |" for name, margin in margins.items()]
+    return "\n".join(["### The margins", "", "| margin | unit | what it is |", "| --- | --- | --- |", *rows, ""])
 
 
 def _named(table: Key | Table) -> str:

@@ -5,11 +5,10 @@ from trajectory.motions.paced import SAME, PacedMotion
 from trajectory.motions.pose_spline import InTime, PoseSpline
 from trajectory.motions.time_law import PathMotion, TimeLaw
 from trajectory.motions.timed_motion import TimedMotion, TimedPath
-from trajectory.motions.torque_terms import AlongPath, ByRate, torque_along, torque_by_rate
+from trajectory.motions.torque_terms import ByRate, torque_along, torque_by_rate
 
 __all__ = [
     "SAME",
-    "AlongPath",
     "ByRate",
     "InTime",
     "Motion",

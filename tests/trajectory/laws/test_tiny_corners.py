@@ -58,6 +58,24 @@ def test_where_a_search_does_not_converge_a_motion_rests_in_a_tiny_corner(
     assert found.law.speed[middle] == 0.0
 
 
+def test_where_nothing_else_is_found_a_motion_rests_in_the_middle(
+    robot: Heli4, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = cornered(robot, 0.02)
+
+    def on_halves_alone(task: refinement.TimingTask, intervals: int) -> refinement.Answer:
+        if task.path is path:
+            refinement.refuse(*task, intervals)
+        return refinement.fastest(task, intervals)
+
+    sooner = jerk_limited(robot, path, LIMITS, 0.5)
+    monkeypatch.setattr("trajectory.laws.jerk.law.fastest", on_halves_alone)
+    found = jerk_limited(robot, path, LIMITS, 0.5)
+    assert repair(robot, found, LIMITS, 0.5).factor < 1.001
+    assert found.law.speed[np.argmin(np.abs(found.law.position - path.length / 2))] == 0.0
+    assert sooner.duration < found.duration < 2.0 * sooner.duration
+
+
 def test_both_laws_time_corners_of_nanometres_beside_wide_ones(robot: Heli4) -> None:
     rng = np.random.default_rng(23)
     places = rng.uniform((-0.2, -0.2, -0.85), (0.2, 0.2, -0.65), (6, 3)).tolist()

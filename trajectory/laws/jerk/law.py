@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -20,16 +21,18 @@ from trajectory.paths import Part, Path, require_poses_of, require_smooth
 
 INTERVALS = 200
 LEAST_INTERVALS = 20
-# Of the path: pieces in whose middle a motion may rest. With the first ones it is always tried: their scales are so far
-# from the path's that a search may end with a slower motion.
+# Of the path: pieces in whose middle a motion may rest, which costs next to nothing there. With the first ones it is
+# always tried: their scales are so far from the path's that a search may end with a slower motion.
 _SHORT = (1e-5, 1e-3)
+_PARTS = (2, 4, 8)  # equal ones, between which a motion rests if nothing else is found
 _CHECKED = 2000  # intervals of arc length between which the joints' positions are looked at
 
 
 def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = INTERVALS) -> TimedPath:
     """The fastest law from rest to rest, with zero s'' at both ends.
 
-    It may rest in very short corners too, where that is found to be faster or nothing else is found.
+    It may rest in very short corners too, where that is found to be faster or nothing else is found; and, as a last
+    resort, at equal distances.
 
     Args:
         robot: any mechanism with the path's kind of pose.
@@ -59,9 +62,13 @@ def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     except TimingFailed as error:
         failed = error
     for share in _SHORT:
-        if (share == _SHORT[0] or not laws) and (law := _resting(task, intervals, share)) is not None:
-            laws.append(law)
-    if failed is not None and not laws:
+        if (share == _SHORT[0] or not laws) and (rests := _middles(np.array(path.knots), share * path.length)):
+            laws += _resting(task, intervals, rests)
+    for parts in _PARTS:
+        if not laws:  # slower than need be, but where the robot can rest there is a motion
+            laws += _resting(task, intervals, (path.length * np.arange(1, parts) / parts).tolist())
+    if not laws:
+        assert failed is not None
         raise failed
     return TimedPath(path, min(laws, key=lambda law: law.duration))
 
@@ -76,21 +83,14 @@ def _passing(task: TimingTask, intervals: int) -> TimeLaw:
     return law
 
 
-def _resting(task: TimingTask, intervals: int, share: float) -> TimeLaw | None:
-    """The law that rests in the middle of each run of pieces that are so short a share of the path too.
-
-    There a rest costs next to nothing, and the scales of what is left are closer. None where there are no such pieces,
-    or no such law.
-    """
+def _resting(task: TimingTask, intervals: int, rests: Sequence[float]) -> list[TimeLaw]:
+    """The law that rests at these arc lengths too; none where there is no such law."""
     path = task.path
-    rests = _middles(np.array(path.knots), share * path.length)
-    if not rests:
-        return None
     parts = [Part(path, a, b) for a, b in pairwise((0.0, *rests, path.length))]
     try:
-        return TimeLaw.joined([_passing(task._replace(path=part), intervals) for part in parts])
+        return [TimeLaw.joined([_passing(task._replace(path=part), intervals) for part in parts])]
     except (TimingFailed, PathBeyondLimit):
-        return None
+        return []
 
 
 def _middles(knots: Array, short: float) -> list[float]:
