@@ -80,10 +80,12 @@ def _bench_table(benchmarks: list[dict[str, Any]]) -> str:
         f"| whole synthesis ({rounds} rounds, a dense search in each) | {median['test_whole_synthesis']:.1f} s |"
     )
     for name, seconds in median.items():
-        law = {"test_toppra": "toppra", "test_jerk_law": "jerk law, repaired"}.get(name.split("[")[0])
+        law = {"test_toppra": "`toppra` law", "test_jerk_law": "jerk law, repaired"}.get(name.split("[")[0])
         if law is not None:
             intervals = name.split("[")[1].rstrip("]")
-            lines.append(f"| {law}, N = {intervals}: half cycle {extra[name]['half_cycle']:.5f} s | {seconds:.3f} s |")
+            lines.append(
+                f"| {law}, from N = {intervals}: half cycle {extra[name]['half_cycle']:.5f} s | {seconds:.3f} s |"
+            )
     return "\n".join(lines) + "\n"
 
 

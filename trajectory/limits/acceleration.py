@@ -27,7 +27,10 @@ class JointAcceleration(InstantLimit):
     name = "joint acceleration"
     fields = (
         JointField(
-            "acceleration", "Of the joints.", "a number > 0, or one a joint (rad/s^2, or m/s^2)", "rad/s^2 or m/s^2"
+            "acceleration",
+            "The largest acceleration of the joints.",
+            "a number > 0, or one a joint (rad/s^2, or m/s^2)",
+            "rad/s^2 or m/s^2",
         ),
     )
     kind = Linear

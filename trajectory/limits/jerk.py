@@ -17,7 +17,7 @@ class JointJerk(InstantLimit):
     fields = (
         JointField(
             "jerk",
-            "Of the joints; the law `jerk` needs one, `toppra` keeps none.",
+            "The largest jerk of the joints. The law `jerk` needs it; `toppra` does not keep it.",
             "a number > 0, or one a joint (rad/s^3, or m/s^3)",
             "rad/s^3 or m/s^3",
         ),

@@ -17,7 +17,7 @@ class JointRanges(InstantLimit):
     fields = (
         RangeField(
             "position",
-            "Of the joints; the path alone decides whether it is kept.",
+            "The ranges of the joints. The path alone decides whether they are kept.",
             "low < high, or one such pair a joint (rad, or m)",
             "rad or m",
         ),

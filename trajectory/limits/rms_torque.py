@@ -25,7 +25,7 @@ class RmsTorque(MeanSquareLimit):
     fields = (
         JointField(
             "rms_torque",
-            "Root mean square of each way by itself, and so of the cycle; not with the law `toppra`.",
+            "The largest root mean square of the torque on each way, and so in the cycle. `toppra` refuses it.",
             "a number > 0, or one a joint (N m, or N)",
             "N m or N",
         ),

@@ -25,7 +25,11 @@ class JointSpeed(InstantLimit):
     """Of the actuators: |q'| <= limit."""
 
     name = "joint speed"
-    fields = (JointField("speed", "Of the joints.", "a speed > 0, or one a joint", SPEED_UNIT, required=True),)
+    fields = (
+        JointField(
+            "speed", "The largest speed of the joints.", "a speed > 0, or one a joint", SPEED_UNIT, required=True
+        ),
+    )
     kind = Cap
     pace_power = 1
 

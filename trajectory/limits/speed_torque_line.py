@@ -29,13 +29,13 @@ class SpeedTorqueLine(InstantLimit):
     fields = (
         JointField(
             "stall_torque",
-            "With no_load_speed: abs(torque) <= stall_torque (1 - abs(speed) / no_load_speed).",
+            "The torque at rest: abs(torque) <= stall_torque (1 - abs(speed) / no_load_speed).",
             "a number > 0, or one a joint (N m, or N)",
             "N m or N",
         ),
         JointField(
             "no_load_speed",
-            "Both or neither: the ends of the speed-torque line.",
+            "The speed without torque, the other end of the same line.",
             "a speed > 0, or one a joint, if and only if there is a stall_torque",
             SPEED_UNIT,
         ),

@@ -28,7 +28,7 @@ class ToolSpeed(InstantLimit):
     """|v| <= cap."""
 
     name = "tool speed"
-    fields = (ToolField("tool_speed", "Of the tool point.", "a speed > 0 (m/s)", "m/s"),)
+    fields = (ToolField("tool_speed", "The largest speed of the tool point.", "a speed > 0 (m/s)", "m/s"),)
     kind = Cap
     pace_power = 1
     not_for_moves = "a move keeps the joints' limits"
@@ -56,7 +56,11 @@ class ToolAcceleration(InstantLimit):
     """|a| <= cap."""
 
     name = "tool acceleration"
-    fields = (ToolField("tool_acceleration", "Of the tool point.", "an acceleration > 0 (m/s^2)", "m/s^2"),)
+    fields = (
+        ToolField(
+            "tool_acceleration", "The largest acceleration of the tool point.", "an acceleration > 0 (m/s^2)", "m/s^2"
+        ),
+    )
     kind = Disc
     pace_power = 2
     not_for_moves = "a move keeps the joints' limits"

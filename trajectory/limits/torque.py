@@ -28,7 +28,9 @@ class PeakTorque(InstantLimit):
     """|tau| <= limit."""
 
     name = "torque"
-    fields = (JointField("torque", "Peak of the drives.", "a number > 0, or one a joint (N m, or N)", "N m or N"),)
+    fields = (
+        JointField("torque", "The peak torque of the drives.", "a number > 0, or one a joint (N m, or N)", "N m or N"),
+    )
     kind = Linear
     pace_power = 2
     of_torque = True
