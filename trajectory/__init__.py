@@ -45,6 +45,7 @@ from trajectory.paths import (
     Reversed,
     RoundedPath,
     pieces,
+    places,
     read_waypoints,
     require_smooth,
 )
@@ -132,6 +133,7 @@ __all__ = [
     "lower_bound",
     "motion_of",
     "pieces",
+    "places",
     "plan_move",
     "plan_stop",
     "pose_motion",

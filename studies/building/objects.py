@@ -35,7 +35,7 @@ from studies.study_file import (
     refused_field,
     travelled,
 )
-from trajectory import Limits, Path, PoseBounds, RoundedPath, Setpoints, TimingLaw, law_named
+from trajectory import Limits, Path, PoseBounds, RoundedPath, Setpoints, TimingLaw, law_named, places
 from trajectory.drive_files import Drive, drive_files
 
 OBJECTIVE = "fvi"
@@ -199,7 +199,8 @@ def pose_bounds_of(study: Study) -> PoseBounds:
     """The study's region, as the free law takes it."""
     region = region_of(study)
     low, high = zip(*(region.intervals[name] for name in study.mechanism_class.pose_names), strict=True)
-    return PoseBounds(low, high, region.radius if isinstance(region, Cylinder) else math.inf)
+    count = places(study.mechanism_class.pose_names)
+    return PoseBounds(low, high, count, region.radius if isinstance(region, Cylinder) else math.inf)
 
 
 def approach_limits(asked: ApproachTable, drives: Limits, joints: int) -> Limits:

@@ -20,7 +20,7 @@ from trajectory.paths.adept import AdeptCycle
 from trajectory.paths.path import Path, Reversed
 
 EXPONENT = 3.0
-TOLERANCE = 1e-5  # m: a cycle starts on the arch's very side
+TOLERANCE = 4e-4  # of the blend: a cycle starts on the arch's very side
 
 
 @dataclass(frozen=True)
@@ -75,6 +75,6 @@ class Arch:
         function = ca.Function("sides", [point], [sides, ca.jacobian(sides, point)])
         # The sides are piecewise linear, and steepest between pick and place, where the floor's own slope counts.
         steepest = np.abs(np.array(function((np.array(self.cycle.pick) + np.array(self.cycle.place)) / 2)[1]))
-        least = np.array(function.map(len(tool))(tool.T)[0]) - steepest @ slack.T + TOLERANCE / self.cycle.blend
+        least = np.array(function.map(len(tool))(tool.T)[0]) - steepest @ slack.T + TOLERANCE
         outside = (np.maximum(least[:3], 0.0) ** self.exponent).sum(axis=0)
         return bool((outside >= 1.0).all() and (least[3] >= 0.0).all())

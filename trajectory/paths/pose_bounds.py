@@ -15,7 +15,7 @@ import numpy as np
 
 from kinematics import Array
 
-EDGE = 1e-7  # m or rad, by which a solver may leave it: an interior even where a coordinate has one value only
+EDGE = 1e-7  # rad, or of the largest length, by which a solver may leave it: even a single value has an interior
 
 
 @dataclass(frozen=True)
@@ -24,16 +24,25 @@ class PoseBounds:
 
     Attributes:
         low, high: (n,) of each coordinate [m or rad].
+        places: how many of the coordinates are lengths; these stand first.
         radius: of the circle about the z axis [m]; infinite without one.
     """
 
     low: tuple[float, ...]
     high: tuple[float, ...]
+    places: int
     radius: float = math.inf
 
     def box(self) -> tuple[Array, Array]:
         """(n,) bounds of each coordinate, the edge included."""
-        return np.array(self.low) - EDGE, np.array(self.high) + EDGE
+        edge = np.full(len(self.low), EDGE)
+        edge[: self.places] *= self._length
+        return np.array(self.low) - edge, np.array(self.high) + edge
+
+    @property
+    def _length(self) -> float:
+        """The largest distance of a bound from 0 [m]."""
+        return float(np.abs([self.low[: self.places], self.high[: self.places]]).max())
 
     def rows(self, points: Sequence[ca.SX]) -> tuple[ca.SX, Array, Array]:
         """Expressions that have to be between two bounds for the Bezier points (4, n) of a cubic to be inside.
@@ -45,7 +54,7 @@ class PoseBounds:
         inner = ca.vertcat(second, third)
         if not math.isfinite(self.radius):
             return inner, np.tile(low, 2), np.tile(high, 2)
-        circle = [ca.sumsqr(point[:2]) / (self.radius + EDGE) ** 2 for point in (first, second, third)]
+        circle = [ca.sumsqr(point[:2]) / (self.radius + EDGE * self._length) ** 2 for point in (first, second, third)]
         least, most = np.full(3, -np.inf), np.ones(3)
         return ca.vertcat(inner, *circle), np.append(np.tile(low, 2), least), np.append(np.tile(high, 2), most)
 

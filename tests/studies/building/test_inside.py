@@ -109,4 +109,4 @@ def test_the_free_law_is_given_the_region_and_a_motion_that_leaves_it_is_refused
     failed = caught.value.failed[0]
     room = float(region.room(np.array(failed.pose), NAMES))
     assert room - 1e-10 <= failed.found <= room  # a bound over a short interval about that pose
-    assert set(given) == {PoseBounds(*zip(*(region.intervals[name] for name in NAMES), strict=True))}
+    assert set(given) == {PoseBounds(*zip(*(region.intervals[name] for name in NAMES), strict=True), 3)}

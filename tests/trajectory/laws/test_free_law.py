@@ -51,7 +51,7 @@ def test_it_is_faster_than_any_motion_on_the_cycle_s_own_path(
 
 def test_the_tool_keeps_clear_of_the_arch_and_a_shrunken_motion_does_not(path: AdeptCycle, motion: PoseSpline) -> None:
     _require_clear(Arch.of(path), motion)
-    low = replace(motion, pose=motion.pose - [0.0, 0.0, 5 * TOLERANCE, 0.0])
+    low = replace(motion, pose=motion.pose - [0.0, 0.0, 5 * TOLERANCE * path.blend, 0.0])
     with pytest.raises(TimingFailed, match="cuts the arch"):
         _require_clear(Arch.of(path), low)
 
@@ -78,7 +78,7 @@ def test_the_way_back_takes_as_long_and_starts_where_the_way_there_ends(
 @pytest.mark.long
 def test_it_stays_inside_its_bounds_between_the_knots_too(robot: Heli4, path: AdeptCycle, motion: PoseSpline) -> None:
     """Bounds that the free motion without them leaves: above, in its turn, and through the circle."""
-    bounds = PoseBounds((-1.0, -1.0, -0.8, 0.0), (1.0, 1.0, -0.75, math.pi), radius=0.153)
+    bounds = PoseBounds((-1.0, -1.0, -0.8, 0.0), (1.0, 1.0, -0.75, math.pi), 3, radius=0.153)
 
     def room(found: PoseSpline) -> np.ndarray:
         pose = found.at(np.linspace(0.0, found.duration, 20_001)).pose
@@ -126,9 +126,9 @@ def test_the_arch_lets_the_cycle_s_own_path_pass_and_no_shortcut(path: AdeptCycl
     circle = centre + path.blend * np.stack([-np.cos(angle), 0 * angle, np.sin(angle)], axis=-1)
     none = np.zeros_like(circle)
     assert arch.kept_clear(circle, none)
-    assert not arch.kept_clear(centre + (circle - centre) * (1 - 3 * TOLERANCE / path.blend), none)
-    assert not arch.kept_clear(circle, none + 3 * TOLERANCE)
-    below = np.array([[path.pick[0] - 0.01, 0.0, path.pick[2] - 3 * TOLERANCE]])
+    assert not arch.kept_clear(centre + (circle - centre) * (1 - 3 * TOLERANCE), none)
+    assert not arch.kept_clear(circle, none + 3 * TOLERANCE * path.blend)
+    below = np.array([[path.pick[0] - 0.01, 0.0, path.pick[2] - 3 * TOLERANCE * path.blend]])
     assert not arch.kept_clear(below, np.zeros((1, 3)))
 
 

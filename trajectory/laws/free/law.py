@@ -26,6 +26,9 @@ _AT_INSTANTS = (Place, Cap, Linear, Disc)
 _AT = (0.0, 0.5)  # where in an interval speed, acceleration, torque are kept
 _ARCH_AT = 480  # instants, about, at which the tool stays outside the arch: a tenth of a blend apart at most
 _PROOF = 100_000  # parts of the motion, over each of which the arch is proved to be kept
+_FINER = 2  # times as many intervals, where they are too wide
+_CLOSER = 8  # instants of an interval at which the limits are looked at again
+_NEARLY = 5e-3  # of a limit, that the repair mends
 _SLOWER = (1.1, 1.15, 1.3)  # durations of the guess over the time-optimal law, until one leads to an answer
 _ROOM = 0.25  # of the path's extent, by which the pose may leave the path's box
 
@@ -45,7 +48,7 @@ def free_motion(
         path: an Adept cycle or its way back; its ends, its arch and the guess come from it.
         limits: of joints and tool, with jerk; all are kept.
         payload: mass at the tool [kg].
-        intervals: of equal time.
+        intervals: of equal time, to start with.
         within: what every pose stays in, at every instant; anywhere about the path when None.
 
     Raises:
@@ -55,6 +58,26 @@ def free_motion(
     require_poses_of(robot, path)
     LAWS["free"].require_kept(limits)
     arch = Arch.of(path)
+    try:
+        return _on_intervals(robot, path, arch, limits, payload, intervals, within)
+    except TimingFailed:
+        return _on_intervals(robot, path, arch, limits, payload, _FINER * intervals, within)
+
+
+def _on_intervals(
+    robot: Mechanism,
+    path: Path,
+    arch: Arch,
+    limits: Limits,
+    payload: float,
+    intervals: int,
+    within: PoseBounds | None,
+) -> PoseSpline:
+    """The fastest motion on so many intervals.
+
+    Raises:
+        TimingFailed: the solver did not converge, or the tool or a limit asks for closer intervals.
+    """
     program = _program(robot, arch, limits, payload, intervals, within)
     guess, end, duration = _guess(robot, path, limits, payload, intervals)
     pose = guess[:, : len(robot.pose_names)]
@@ -67,15 +90,25 @@ def free_motion(
         answer = program.solve(guess, end, low, high, slower * duration)
         if answer.status == "Solve_Succeeded":
             break
+    asked = {**limits.as_dict(), "payload": payload, "intervals": intervals, "path": path.as_dict()}
     if answer.status != "Solve_Succeeded":
-        asked = {**limits.as_dict(), "payload": payload, "intervals": intervals, "path": path.as_dict()}
         raise TimingFailed("free", asked, f"IPOPT ended with {answer.status}")
     times = np.linspace(0.0, answer.duration, intervals + 1)
     (ends,) = path.evaluate(np.array([0.0, path.length]), 0)
     p, v, a, j = (r / answer.duration**order for order, r in enumerate(np.split(answer.start, 4, axis=1)))
     motion = PoseSpline("free", times, p, v, a, j, ends)
     _require_clear(arch, motion)
+    if (used := _between(robot, limits, payload, motion)) > 1.0 + _NEARLY:
+        raise TimingFailed("free", asked, f"between its instants it uses {used:.4g} of a limit")
     return motion
+
+
+def _between(robot: Mechanism, limits: Limits, payload: float, motion: PoseSpline) -> float:
+    """The most that a motion uses of a limit at instants closer than those at which it is kept."""
+    _, at = motion.within(np.linspace(0.0, 1.0, _CLOSER + 1))
+    rates = [rate.reshape(-1, rate.shape[-1]).T for rate in (at.pose, at.velocity, at.acceleration)]
+    limited, _, _ = _limited(robot, limits, payload)
+    return float(np.abs(np.array(limited.map(rates[0].shape[1])(*rates))).max())
 
 
 def _require_clear(arch: Arch, motion: PoseSpline) -> None:
@@ -85,8 +118,8 @@ def _require_clear(arch: Arch, motion: PoseSpline) -> None:
     _, at = motion.within((np.arange(parts) + 0.5) / parts)
     away = half * (np.abs(at.velocity) + half * (np.abs(at.acceleration) + half * np.abs(at.jerk)))
     if not arch.kept_clear(at.pose[..., :3].reshape(-1, 3), away[..., :3].reshape(-1, 3)):
-        asked = {"intervals": motion.times.size - 1, "tolerance of the arch": TOLERANCE}
-        raise TimingFailed("free", asked, "the tool cuts the arch between the samples: more intervals help")
+        asked = {"intervals": motion.times.size - 1, "tolerance of the arch, of the blend": TOLERANCE}
+        raise TimingFailed("free", asked, "the tool cuts the arch between the samples")
 
 
 def _guess(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int) -> tuple[Array, Array, float]:
@@ -152,6 +185,7 @@ def _within(start: ca.SX, t: float, n: int) -> list[ca.SX]:
     return [p + t * (v + t * (a / 2 + t * j / 6)), v + t * (a + t * j / 2), a + t * j, j]
 
 
+@lru_cache(maxsize=4)
 def _limited(robot: Mechanism, limits: Limits, payload: float) -> tuple[ca.Function, ca.Function, ca.Function]:
     """What is kept between -1 and 1 at a pose, velocity and acceleration; the joints' jerk; squares of the torque."""
     model = robot.model()
