@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from design.budget import Budget
 from design.certificates import (
+    MOST_BOXES,
     BestBound,
     Certificate,
     CertifiedRegion,
@@ -36,10 +37,13 @@ from design.maps import (
 )
 from design.regions import Box, Cylinder, Region
 from design.requirement import Bounds, Requirement, SumLimit
-from design.sampling import Sweep, WorstPoses, sweep, worst_poses
-from design.synthesis import Problem, Synthesis, SynthesisFailed, active_sets, synthesise, worst_of
+from design.sampling import DENSE, Sweep, WorstPoses, sweep, worst_poses
+from design.synthesis import STARTS, Problem, Synthesis, SynthesisFailed, active_sets, synthesise, worst_of
 
 __all__ = [
+    "DENSE",
+    "MOST_BOXES",
+    "STARTS",
     "BestBound",
     "Bounds",
     "Box",

@@ -1,7 +1,7 @@
 """Proofs over whole regions, their files, and their replay."""
 
 from design.certificates.best_bound import BestBound, best_bound
-from design.certificates.certificate import Certificate, answer_by_boxes, certify, checked_boxes
+from design.certificates.certificate import MOST_BOXES, Certificate, answer_by_boxes, certify, checked_boxes
 from design.certificates.certificate_file import certificate_bytes, load_certificate, save_certificate
 from design.certificates.largest_region import CertifiedRegion, certified_cylinder
 from design.certificates.lower_bounds import LowerBounds
@@ -9,6 +9,7 @@ from design.certificates.refutation import Refuter
 from design.certificates.replay import replay
 
 __all__ = [
+    "MOST_BOXES",
     "BestBound",
     "Certificate",
     "CertifiedRegion",

@@ -8,6 +8,7 @@ from design.synthesis.errors import SynthesisFailed
 from design.synthesis.nlp import Problem
 from kinematics import Array, InvalidGeometry, Mechanism, UnreachablePose
 
+STARTS = 3  # by default: the prototype and two random geometries
 _ATTEMPTS = 200  # geometries drawn for each wanted start
 
 

@@ -16,7 +16,7 @@ from design.regions import Region
 from design.sampling import DENSE, WorstPoses
 from design.synthesis.exchange import Candidate, Exchange, Progress, Round
 from design.synthesis.nlp import NlpSolution, Problem
-from design.synthesis.starts import reaching_starts, require_possible_sums
+from design.synthesis.starts import STARTS, reaching_starts, require_possible_sums
 from kinematics import Array, Mechanism, positive, whole
 
 SECONDS = 600.0
@@ -47,7 +47,7 @@ def synthesise(
     region: Region,
     *,
     seed: int = 0,
-    starts: int = 3,
+    starts: int = STARTS,
     about: int = DENSE,
     max_rounds: int = 20,
     tolerance: float = 1e-5,

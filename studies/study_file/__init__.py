@@ -1,6 +1,8 @@
 """The study file: its tables, their units, and the lines on which its keys stand."""
 
 from studies.study_file.at_key import refused_field, told_at_key, travelled
+from studies.study_file.conversion import LARGEST, Conversion, Finding
+from studies.study_file.keys import Key, Table
 from studies.study_file.limits_table import LimitsTable
 from studies.study_file.locate import FILE, FOLDER, study_names, study_path
 from studies.study_file.machine_tables import InertiaTable
@@ -20,7 +22,7 @@ from studies.study_file.study import (
 from studies.study_file.table import table_of
 from studies.study_file.toml_file import TomlFile, read_toml
 from studies.study_file.trajectory_tables import ApproachTable, DriveTable, TrajectoryTable
-from studies.study_file.units import LARGEST, Conversion, Dimension, Finding, Key, Table
+from studies.study_file.units import Dimension
 
 __all__ = [
     "FILE",

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, ValidationInfo, create_model, field_validator
 
+from studies.study_file.keys import Key
 from studies.study_file.table import Interval, PerJoint, Positive, StudyTable
-from studies.study_file.units import Dimension, Key
+from studies.study_file.units import Dimension
 from trajectory import LIMITS, SPEED_UNIT, JointField, Limit, LimitField, Limits, RangeField, ToolField
 
 _HOLDS: dict[type[LimitField], Any] = {

@@ -4,8 +4,8 @@ from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
+from studies.study_file.keys import Key
 from studies.study_file.table import StudyTable, gathered, table_of
-from studies.study_file.units import Key
 
 Numbers = float | tuple[float, ...]
 Ranges = dict[str, Numbers | tuple[tuple[float, float], ...]]

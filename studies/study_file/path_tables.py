@@ -6,8 +6,9 @@ from typing import Annotated, Any
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from kinematics import InvalidValue
+from studies.study_file.keys import Key
 from studies.study_file.table import Name, Positive, StudyTable, gathered, one_of, table_of
-from studies.study_file.units import Dimension, Key
+from studies.study_file.units import Dimension
 from trajectory import STANDARD_SIZES, AdeptCycle
 
 LENGTH, ANGLE = Dimension.LENGTH, Dimension.ANGLE

@@ -4,12 +4,14 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, SkipValidation, model_validator
 
+from design import DENSE, MOST_BOXES, STARTS
 from kinematics import Mechanism
+from studies.study_file.keys import Key, Table
 from studies.study_file.machine_tables import InertiaTable, Ranges
 from studies.study_file.questions import digest_of, plain
 from studies.study_file.table import Entry, Interval, Name, Positive, StudyTable, gathered, table_of
 from studies.study_file.trajectory_tables import TrajectoryTable
-from studies.study_file.units import Dimension, Key, Table
+from studies.study_file.units import Dimension
 
 LENGTH = Dimension.LENGTH
 Coordinate = float | Interval
@@ -88,7 +90,7 @@ class OptimiseTable(StudyTable):
 
     seed: Annotated[int, Field(ge=0, lt=2**32), Key("a whole number from 0 to 2^32 - 1")] = 0
     """The seed of the random starts."""
-    starts: Annotated[int, Field(ge=1, le=10_000), Key("a whole number from 1 to 10000")] = 3
+    starts: Annotated[int, Field(ge=1, le=10_000), Key("a whole number from 1 to 10000")] = STARTS
     """How many geometries to start from. The study's own is the first."""
     variables: Annotated[dict[str, Interval | tuple[Entry, ...]], Field(min_length=1), Table({})]
     """The bounds of each variable: (low, high), or a pair for each entry of a list. Equal bounds fix an entry."""
@@ -112,7 +114,7 @@ class CertifyTable(StudyTable):
     """The margins to prove. None takes all that are required, and the objective."""
     tolerance: Annotated[Positive, Field(lt=1), Key("a number above 0 and below 1")] = 0.01
     """How far a best bound may stay below the lowest value found, relative to that value."""
-    most_boxes: Annotated[int, Field(ge=4, le=8_000_000), Key("a whole number from 4 to 8000000")] = 4_000_000
+    most_boxes: Annotated[int, Field(ge=4, le=8_000_000), Key("a whole number from 4 to 8000000")] = MOST_BOXES
     """The largest number of boxes for a claim. A claim that needs more is undecided."""
 
 
@@ -163,7 +165,7 @@ class Study(StudyTable):
     optimise: Annotated[OptimiseTable | None, table_of(OptimiseTable)] = None
     """What the optimisation may change. None keeps the geometry as it is given."""
     dense_sample: Annotated[int, Field(ge=10_000, le=100_000_000), Key("a whole number from 10000 to 100000000")] = (
-        1_000_000
+        DENSE
     )
     """About how many poses the dense search looks at, before it descends from the lowest ones."""
     requirement: Annotated[tuple[RequirementTable, ...], table_of(RequirementTable, rows=True)] = ()

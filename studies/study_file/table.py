@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from studies.study_file.units import Key, Table
+from studies.study_file.keys import Key, Table
 
 
 def _rising(pair: tuple[float, float]) -> tuple[float, float]:

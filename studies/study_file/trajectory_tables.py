@@ -4,10 +4,11 @@ from typing import Annotated
 
 from pydantic import Field, ValidationInfo, field_validator
 
+from studies.study_file.keys import Key
 from studies.study_file.limits_table import LimitsTable
 from studies.study_file.path_tables import CycleTable, WaypointPathTable
 from studies.study_file.table import Name, PerJoint, Positive, StudyTable, one_of, table_of
-from studies.study_file.units import Dimension, Key
+from studies.study_file.units import Dimension
 from trajectory import LAWS
 from trajectory.drive_files import FORMATS
 

@@ -10,8 +10,8 @@ from pydantic.fields import FieldInfo
 
 from kinematics import MECHANISMS
 from studies.building.against_mechanism import study_table
+from studies.study_file.keys import Key, Table
 from studies.study_file.study import Study
-from studies.study_file.units import Key, Table
 from tests.bench.page import ROOT, write_between
 
 PAGE = ROOT / "docs" / "study_file.md"

@@ -20,11 +20,12 @@ from studies.results.output_folder import OutputFolder
 from studies.results.outputs import write_model, write_setpoints
 from studies.stages.cycle_stage import time_cycle
 from studies.stages.proofs import question_of
+from studies.study_file.keys import Key
 from studies.study_file.locate import FOLDER
 from studies.study_file.questions import design_question, digest_of
 from studies.study_file.study import Study
 from studies.study_file.toml_file import read_toml
-from studies.study_file.units import Dimension, Key
+from studies.study_file.units import Dimension
 from tests.studies.command_line import SMALL, SmallRun, copy_of, linkwright
 from trajectory import read_setpoints
 
