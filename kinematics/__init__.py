@@ -36,7 +36,7 @@ from kinematics.evaluation import (
     over_spans,
     run_through,
 )
-from kinematics.machine import UNIFORM, DriveTrain, GeometryRecord, InertiaRecord, JointRanges
+from kinematics.machine import UNIFORM, DriveTrain, FieldKind, GeometryRecord, InertiaRecord, JointRanges, kind_of
 from kinematics.margins import CLEARANCE, PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
@@ -77,6 +77,7 @@ __all__ = [
     "ClaimSymbols",
     "Delta",
     "DriveTrain",
+    "FieldKind",
     "FviBounds",
     "GeometryRecord",
     "GoughStewart",
@@ -123,6 +124,7 @@ __all__ = [
     "from_actuators",
     "inverse_dynamics",
     "joint_motion",
+    "kind_of",
     "loop_mobility",
     "mjcf",
     "mobility_of_identical_chains",

@@ -2,17 +2,8 @@
 
 from kinematics.machine.bodies import UNIFORM, Bodies, InertiaRecord, Particle, Rod, Rotor
 from kinematics.machine.drive_train import REST, DriveTrain
-from kinematics.machine.geometry import (
-    TURN,
-    GeometryRecord,
-    Points,
-    angle,
-    frame,
-    length,
-    numbers_of,
-    ratio,
-    screw_pitch,
-)
+from kinematics.machine.geometry_fields import TURN, FieldKind, Points, angle, frame, length, ratio, screw_pitch
+from kinematics.machine.geometry_record import GeometryRecord, kind_of, numbers_of
 from kinematics.machine.joint_ranges import JointRanges, Pair, PassiveJoint, RodRanges
 from kinematics.machine.links import (
     AXES,
@@ -36,6 +27,7 @@ __all__ = [
     "Connection",
     "Coupling",
     "DriveTrain",
+    "FieldKind",
     "GeometryRecord",
     "InertiaRecord",
     "JointRanges",
@@ -52,6 +44,7 @@ __all__ = [
     "TreeJoint",
     "angle",
     "frame",
+    "kind_of",
     "length",
     "numbers_of",
     "ratio",

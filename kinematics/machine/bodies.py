@@ -11,7 +11,7 @@ import numpy as np
 
 from kinematics.errors import InvalidField
 from kinematics.machine.drive_train import DriveTrain
-from kinematics.machine.geometry import frozen, numbers_of
+from kinematics.machine.geometry_record import frozen, numbers_of
 
 UNIFORM = 2 / 3  # the `rod_middle` of a thin uniform rod: with 1/6 at each end, its mass, centre and inertia
 

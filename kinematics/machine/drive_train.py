@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from kinematics.errors import InvalidField
-from kinematics.machine.geometry import frozen, numbers_of
+from kinematics.machine.geometry_record import frozen, numbers_of
 
 PerActuator = float | tuple[float, ...]
 REST = 1e-9  # [rad/s or m/s], above what rounding leaves of a speed of 0

@@ -12,7 +12,7 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.errors import InvalidField
-from kinematics.machine.geometry import numbers_of
+from kinematics.machine.geometry_record import numbers_of
 
 Pair = tuple[float, float]
 # Squared sine of a tilt that is taken for smaller ones, beyond what doubles tell apart from 0 beside an angle of

@@ -21,6 +21,7 @@ from kinematics.robots.shared import (
     ArmRanges,
     Limbs,
     RotaryLimbs,
+    arms_and_rods,
     central_limbs,
     columns,
     height_in_reach,
@@ -107,7 +108,7 @@ class Delta(RotaryLimbs):
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, rods, plate and payload."""
-        bodies = self.limb_bodies(pose, joints, g, self.inertia.rod_mass, ["plate"] * 3)
+        bodies = arms_and_rods(self, pose, joints, g, self.inertia.rod_mass, ["plate"] * 3)
         bodies.particles.append(Particle("plate", self.inertia.plate_mass + payload, pose))
         return bodies
 

@@ -30,6 +30,7 @@ from kinematics.robots.shared import (
     ArmRanges,
     Limbs,
     RotaryLimbs,
+    arms_and_rods,
     columns,
     radial_directions,
     twins,
@@ -148,7 +149,7 @@ class Hexa(SixLegs, RotaryLimbs):
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, rods, platform, payload."""
-        bodies = self.limb_bodies(pose, joints, g, self.inertia.rod_mass, ["platform"] * 6)
+        bodies = arms_and_rods(self, pose, joints, g, self.inertia.rod_mass, ["platform"] * 6)
         self.platform_bodies(pose, self.platform_points(pose, g), payload, bodies)
         return bodies
 

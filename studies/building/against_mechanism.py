@@ -84,7 +84,7 @@ def at_odds(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[Key
     fields = geometry_fields(mechanism)
     for name, value in subtable(data, "geometry").items():
         field = fields[name]
-        if shape(value) != field.shape or not all(field.allows(n, n) for n in _numbers(value)):
+        if shape(value) != field.shape or not all(field.kind.allows(n, n) for n in _numbers(value)):
             yield ("geometry", name)
     yield from hardware_faults(data, mechanism)
     yield from _uncounted(subtable(data, "trajectory"), len(mechanism.joint_names))
@@ -100,7 +100,7 @@ def at_odds(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[Key
         ends = [_numbers(pair) for pair in pairs]
         if (
             len(ends) != math.prod(field.shape)
-            or any(len(pair) != 2 or not field.allows(pair[0], pair[1]) for pair in ends)
+            or any(len(pair) != 2 or not field.kind.allows(pair[0], pair[1]) for pair in ends)
             or all(pair[0] == pair[1] for pair in ends)
         ):
             yield ("optimise", "variables", name)
@@ -183,7 +183,7 @@ def _pose_dimension(name: str) -> Dimension:
 def _dimensions(field: GeometryField) -> Key:
     count = " x ".join(map(str, field.shape)) or "a"
     plural = "s" if field.shape else ""
-    return Key(f"{count} finite number{plural}{_condition(field)}", Dimension(field.dimension), place=_is_place(field))
+    return _key_of(field, f"{count} finite number{plural}{field.kind.condition}")
 
 
 def _bounds(field: GeometryField) -> Key:
@@ -192,23 +192,16 @@ def _bounds(field: GeometryField) -> Key:
         if field.shape
         else ""
     )
-    return Key(f"low < high{_condition(field)}{pairs}", Dimension(field.dimension), place=_is_place(field))
+    return _key_of(field, f"low < high{field.kind.condition}{pairs}")
 
 
-def _is_place(field: GeometryField) -> bool:
-    return field.dimension == Dimension.LENGTH and field.minimum is None
-
-
-def _condition(field: GeometryField) -> str:
-    if field.dimension == Dimension.LENGTH_PER_TURN:
-        return ", 0 left out"
-    if field.minimum is None:
-        return ""
-    return f", above {field.minimum:g} m" if field.minimum else ", above 0"
+def _key_of(field: GeometryField, expected: str) -> Key:
+    dimension = Dimension(field.kind.dimension)
+    return Key(expected, dimension, place=dimension is Dimension.LENGTH and field.kind.above is None)
 
 
 def _lengths(fields: Mapping[str, GeometryField]) -> tuple[str, ...]:
-    return tuple(name for name, field in fields.items() if field.dimension == Dimension.LENGTH)
+    return tuple(name for name, field in fields.items() if field.kind.dimension == Dimension.LENGTH)
 
 
 def _rows(data: Mapping[str, Any], name: str, key: str) -> Iterator[tuple[int, Any]]:

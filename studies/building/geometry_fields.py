@@ -2,39 +2,23 @@
 
 from __future__ import annotations
 
-import dataclasses
+from dataclasses import dataclass, fields
 
-from kinematics import Mechanism
+from kinematics import FieldKind, Mechanism, kind_of
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclass(frozen=True)
 class GeometryField:
-    """A field of a mechanism's geometry: `shape` () for a number, (4,) for four.
+    """A field of a mechanism's geometry: its kind, and its `shape`, () for a number, (4,) for four."""
 
-    Every number is above `minimum` [SI]; None allows any sign. No pitch is zero.
-    """
-
-    dimension: str
+    kind: FieldKind
     shape: tuple[int, ...]
-    minimum: float | None
-
-    def allows(self, low: float, high: float) -> bool:
-        """Whether the field may hold every number from `low` to `high` [SI]."""
-        without_zero = self.dimension != "length_per_turn" or not low <= 0 <= high
-        return without_zero and (self.minimum is None or low > self.minimum)
 
 
 def geometry_fields(mechanism: type[Mechanism]) -> dict[str, GeometryField]:
     """The geometry's fields by name; the prototype's values give the shapes."""
     prototype = mechanism.Geometry()
-    return {
-        field.name: GeometryField(
-            dimension=field.metadata["dimension"],
-            shape=shape(getattr(prototype, field.name)),
-            minimum=field.metadata.get("minimum"),
-        )
-        for field in dataclasses.fields(mechanism.Geometry)
-    }
+    return {f.name: GeometryField(kind_of(f), shape(getattr(prototype, f.name))) for f in fields(prototype)}
 
 
 def shape(value: object) -> tuple[int, ...]:

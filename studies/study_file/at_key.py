@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from kinematics import InvalidField, LinkwrightError, UnreachablePose
 from studies.errors import ApproachFailed, Fault, HomeOutOfReach, KeyPath, StudyError, dotted, spelled
 from studies.study_file.toml_file import TomlFile
+from studies.study_file.units import SUFFIX
 from trajectory import LimitsExceeded, PathBeyondLimit, PathRefused, RoughPath, TimingFailed, UnsuitedPath
 
 _RECORDS: dict[str, KeyPath] = {
@@ -71,8 +72,8 @@ def refused_field(file: TomlFile, error: InvalidField, why: str = "") -> Fault |
 
 def _spelling(file: TomlFile, path: KeyPath) -> KeyPath:
     """The key as the file has it, with a suffix of a unit if that is so."""
-    known = (other for other in file.lines if other[:-1] == path[:-1] and str(other[-1]).startswith(f"{path[-1]}_"))
-    return path if path in file.lines else next(known, path)
+    suffixed: list[KeyPath] = [(*path[:-1], f"{path[-1]}_{suffix}") for suffix in SUFFIX.values()]
+    return next((key for key in (path, *suffixed) if key in file.lines), path)
 
 
 def _of_home(file: TomlFile, error: HomeOutOfReach) -> StudyError:

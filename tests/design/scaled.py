@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from design import Box
-from kinematics import FviBounds, Mechanism
+from kinematics import FviBounds, Mechanism, kind_of
 
 _LENGTHS = ("length", "length_per_turn")
 
@@ -19,9 +19,9 @@ def scaled(robot: Mechanism, factor: float) -> Mechanism:
     changes: dict[str, Any] = {}
     for f in fields(robot.geometry):
         value = np.array(getattr(robot.geometry, f.name), dtype=float)
-        if f.metadata["dimension"] in _LENGTHS:
+        if kind_of(f).dimension in _LENGTHS:
             value = value * factor
-        elif f.metadata["dimension"] == "frame":
+        elif kind_of(f).dimension == "frame":
             value[:3, 3] *= factor
         changes[f.name] = _nested(value)
     ranges = robot.ranges

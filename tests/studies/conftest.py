@@ -1,15 +1,15 @@
 """A small mechanism that stands in for the real ones, and a complete study of it."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import pytest
 
 import kinematics
 from kinematics import InertiaRecord
-from kinematics.machine.joint_ranges import RodRanges
+from kinematics.machine import RodRanges, angle, length, screw_pitch
 from tests.studies.command_line import SMALL, SmallRun, linkwright_apart
 
 STUDY = """\
@@ -96,10 +96,6 @@ theta_deg = 90
 """
 
 
-def length(default: Any, minimum: float | None = None) -> Any:
-    return field(default=default, metadata={"dimension": "length", "minimum": minimum})
-
-
 class Fake:
     """As much of a mechanism as a study file speaks of."""
 
@@ -111,12 +107,12 @@ class Fake:
 
     @dataclass(frozen=True)
     class Geometry:
-        arm_length: float = length(0.35, minimum=0.0)
-        rod_length: float = length(0.8, minimum=0.0)
-        plate_offset: float = length(0.0)
-        pitch: float = field(default=0.05, metadata={"dimension": "length_per_turn"})
-        azimuths: tuple[float, ...] = field(default=(0.0, 1.0, 2.0, 3.0), metadata={"dimension": "angle"})
-        points: tuple[tuple[float, ...], ...] = length(((0.0, 1.0), (1.0, 0.0), (1.0, 1.0)))
+        arm_length: float = length(0.35, doc="L")
+        rod_length: float = length(0.8, doc="l")
+        plate_offset: float = length(0.0, minimum=None, doc="h")
+        pitch: float = screw_pitch(0.05, doc="p")
+        azimuths: tuple[float, ...] = angle((0.0, 1.0, 2.0, 3.0), doc="alpha")
+        points: tuple[tuple[float, ...], ...] = length(((0.0, 1.0), (1.0, 0.0), (1.0, 1.0)), minimum=None, doc="P")
 
     @dataclass(frozen=True)
     class Inertia(InertiaRecord):

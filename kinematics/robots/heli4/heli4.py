@@ -6,8 +6,6 @@ are the paper's; where it errs, the expression here follows from the closure and
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
 from functools import cached_property
 from types import SimpleNamespace
 
@@ -16,17 +14,17 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
-from kinematics.machine import TURN, Bodies, Particle, Rotor, angle, length, screw_pitch
+from kinematics.machine import TURN
 from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import gaps, real_roots, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, in_aspect, joined_to_home, polished
+from kinematics.robots.heli4.bodies import Heli4Inertia, bodies
 from kinematics.robots.heli4.forward import Plates, plates
+from kinematics.robots.heli4.geometry import UPPER, Heli4Geometry
 from kinematics.robots.heli4.links import links
 from kinematics.robots.shared import (
     INTERNAL_DETERMINANT,
-    ArmInertia,
     ArmRanges,
-    HalvesGeometry,
     Limbs,
     RodLevel,
     RotaryLimbs,
@@ -36,44 +34,10 @@ from kinematics.robots.shared import (
     radial_directions,
 )
 
-_UPPER = (0.0, 0.0, 1.0, 1.0)  # which limbs hold the plate that rides on the screw: (7), (8)
-_DEG = math.pi / 180.0
 _E_Z = ca.DM([0, 0, 1])
 _SAME = 1e-6  # rad, or of the robot's size: poses that differ by no more are one
 _APART = 0.25  # of a rod: with plates further apart the roots may change their order
 _OPEN = 1e-12  # rad, or of the robot's size: by what displacement a closed form may miss
-
-
-@dataclass(frozen=True)
-class Heli4Geometry(HalvesGeometry):
-    """Table 1 of the paper, in metres and radians.
-
-    Raises:
-        InvalidGeometry: besides what any geometry refuses: both limbs of a plate have the same azimuth.
-    """
-
-    base_radius: float = length(0.350, doc="R, of the actuators' axes")
-    platform_radius: float = length(0.041, doc="r, of the plates")
-    arm_length: float = length(0.351, doc="L, actuator to rod")
-    rod_length: float = length(0.800, doc="l, rod")
-    height_step: float = length(0.0, minimum=None, doc="H, actuators 3 and 4 above 1 and 2")
-    plate_offset: float = length(0.041, minimum=None, doc="h, plates above the tool point")
-    pitch: float = screw_pitch(0.050, doc="p, of the screw")
-    azimuths: tuple[float, ...] = angle((0.0, 180 * _DEG, 90 * _DEG, 270 * _DEG), doc="alpha, of the limbs")
-    parallelogram_width: float = length(0.1, doc="d, between the two rods of a limb; not in the paper")
-
-
-@dataclass(frozen=True)
-class Heli4Inertia(ArmInertia):
-    """Arms as everywhere here; and the plates.
-
-    Attributes:
-        plate_masses: lower plate (limbs 1 and 2) and upper plate.
-        tool: inertia of the tool about e_z; the payload is a point on the lower plate.
-    """
-
-    plate_masses: tuple[float, float] = (0.55, 0.55)
-    tool: float = 6e-4
 
 
 class Heli4(RotaryLimbs, RodLevel):
@@ -114,12 +78,12 @@ class Heli4(RotaryLimbs, RodLevel):
     def limbs(g: SimpleNamespace) -> Limbs:
         """P_i, (2), (3), and the arms' directions, (4), (5): q from e_z outward."""
         limbs = central_limbs(g)
-        return limbs._replace(actuators=limbs.actuators + _heights(g.height_step * ca.DM(_UPPER)))
+        return limbs._replace(actuators=limbs.actuators + _heights(g.height_step * ca.DM(UPPER)))
 
     @staticmethod
     def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """B_i (3, 4), where the rods meet the plates; (6)-(8), with p in metres per radian."""
-        upper = ca.DM(_UPPER)
+        upper = ca.DM(UPPER)
         heights = g.plate_offset + upper * (g.height_step + g.pitch / TURN * pose[3])
         result: ca.SX = (
             ca.repmat(pose[:3], 1, 4) + g.platform_radius * radial_directions(g.azimuths)[0] + _heights(heights)
@@ -146,7 +110,7 @@ class Heli4(RotaryLimbs, RodLevel):
         rods = []
         for limb in range(4):
             plate = ca.vertcat(displacement[3:5], displacement[5] + displacement[6 + limb // 2])
-            climb = -_UPPER[limb] * g.pitch / TURN * displacement[7]
+            climb = -UPPER[limb] * g.pitch / TURN * displacement[7]
             for side in (-0.5, 0.5):
                 offset = side * g.parallelogram_width * axis[:, limb]
                 end = platforms[:, limb] + offset
@@ -165,17 +129,8 @@ class Heli4(RotaryLimbs, RodLevel):
         result: ca.SX = ca.cross(*lines)[2] / model.g.rod_length**4
         return result
 
+    bodies = bodies
     link_tree = links
-
-    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
-        """Arms with their drives, rods, plates, payload and tool."""
-        i, plates = self.inertia, ("lower plate", "upper plate")
-        bodies = self.limb_bodies(pose, joints, g, i.rod_mass, [plates[int(k)] for k in _UPPER])
-        upper = pose[:3] + g.pitch / TURN * pose[3] * _E_Z
-        lower = Particle(plates[0], i.plate_masses[0] + payload, pose[:3])
-        bodies.particles.extend([lower, Particle(plates[1], i.plate_masses[1], upper)])
-        bodies.rotors.append(Rotor(i.tool, pose[3]))
-        return bodies
 
     @staticmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:

@@ -29,6 +29,7 @@ from kinematics.robots.shared import (
     HalvesGeometry,
     Limbs,
     RotaryLimbs,
+    arms_and_rods,
     central_limbs,
     columns,
     height_in_reach,
@@ -137,7 +138,7 @@ class Par4(RotaryLimbs):
         """Arms, rods, halves, bars, tool, payload."""
         i, psi, halves = self.inertia, pose[3] / g.amplification, ("half 1", "half 2")
         half = self.half_bar(psi, g)
-        bodies = self.limb_bodies(pose, joints, g, i.rod_mass, [halves[int(side > 0)] for side in _HALF])
+        bodies = arms_and_rods(self, pose, joints, g, i.rod_mass, [halves[int(side > 0)] for side in _HALF])
         for link, mass, side in zip(halves, i.half_masses, (-1, 1), strict=True):
             bodies.particles.append(Particle(link, mass, pose[:3] + side * half))
         bodies.particles.append(Particle("bars", i.bars_mass + payload, pose[:3]))

@@ -12,7 +12,7 @@ from kinematics.arrays import Array
 from kinematics.machine import Bodies, GeometryRecord, JointRanges, Pair, angle, length
 from kinematics.model import FviBounds
 from kinematics.robots.planar.planar import AZIMUTHS, Planar, PlanarGeometry, PlanarInertia
-from kinematics.robots.shared import Limbs, RotaryLimbs, radial_directions
+from kinematics.robots.shared import Limbs, RotaryLimbs, arms_and_rods, radial_directions
 
 
 @dataclass(frozen=True)
@@ -87,6 +87,6 @@ class Planar3RRR(Planar, RotaryLimbs):
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, drives, rods and platform."""
-        bodies = self.limb_bodies(pose, joints, g, self.inertia.link_mass, ["platform"] * 3)
+        bodies = arms_and_rods(self, pose, joints, g, self.inertia.link_mass, ["platform"] * 3)
         self.platform_bodies(pose, g, payload, bodies)
         return bodies

@@ -1,11 +1,13 @@
-"""The redundant 3T-1R robot's numbers: its paper's optimised geometry, and masses that are ours."""
+"""The redundant 3T-1R robot's numbers: its paper's optimised geometry, and joint ranges that are ours."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from kinematics.machine import GeometryRecord, InertiaRecord, Pair, RodRanges, length
+from kinematics.machine import GeometryRecord, Pair, RodRanges, length
 
+LIMBS = 6
+PARALLELOGRAMS = (2, 3)  # the limbs of two rods, from 0
 _LEAST_SPREAD = 1e-4  # of rails, over the arms' length: the forward model loses as many digits as this has zeros
 
 
@@ -37,23 +39,6 @@ class Redundant3T1RGeometry(GeometryRecord):
         if abs(self.outer_rail_z - self.platform_height / 2) < outer:
             why = f"{outer:g} m or more from platform_height / 2, or nothing holds the height at z = 0"
             raise self._invalid("outer_rail_z", self.outer_rail_z, why)
-
-
-@dataclass(frozen=True)
-class Redundant3T1RInertia(InertiaRecord):
-    """A light machine with carbon arms: an assumption of this project, the paper gives no masses. SI units.
-
-    Attributes:
-        slide_mass: one carriage with the moving part of its linear motor.
-        rod_mass: one rod; arms 3 and 4 have two.
-        platform_mass: at the tool centre point P, where the payload sits too.
-        platform_inertia: of the platform about e_z through P.
-    """
-
-    slide_mass: float = 5.0
-    rod_mass: float = 0.9
-    platform_mass: float = 3.0
-    platform_inertia: float = 0.015
 
 
 @dataclass(frozen=True)

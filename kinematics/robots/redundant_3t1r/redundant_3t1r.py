@@ -18,7 +18,7 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
-from kinematics.machine import Bodies, Particle, PassiveJoint, Rod, Rotor
+from kinematics.machine import PassiveJoint
 from kinematics.margins import CLEARANCE, PASSIVE_JOINT, STANDARD
 from kinematics.model import (
     BestFit,
@@ -31,18 +31,22 @@ from kinematics.model import (
     least_squares,
     polished,
 )
+from kinematics.robots.redundant_3t1r.bodies import Redundant3T1RInertia, bodies
 from kinematics.robots.redundant_3t1r.clearance import arm_distances, arms_apart
 from kinematics.robots.redundant_3t1r.forward import candidates
-from kinematics.robots.redundant_3t1r.geometry import Redundant3T1RGeometry, Redundant3T1RInertia, Redundant3T1RRanges
+from kinematics.robots.redundant_3t1r.geometry import (
+    LIMBS,
+    PARALLELOGRAMS,
+    Redundant3T1RGeometry,
+    Redundant3T1RRanges,
+)
 from kinematics.robots.redundant_3t1r.singularities import ParallelSingularity, parallel_conditions
 from kinematics.robots.shared import INTERNAL_DETERMINANT, RodLevel, outline
 
-_LIMBS = 6
 _AHEAD = ca.DM([-0.5, -0.5, 0.5, 0.5, -0.5, -0.5])  # B_i along the platform's x, in units of d
 _ABOVE = ca.DM([0.5, 0.5, 0.0, 0.0, -0.5, -0.5])  # B_i along e_z, in units of a
 _SIDE = (1, -1, 1, -1, 1, -1)  # y_1 = y_5 = -y_2 = -y_6, y_3 = -y_4
 _FLOOR = (1, 1, 0, 0, -1, -1)  # z_1 = z_2 = -z_5 = -z_6, z_3 = z_4 = 0
-_PARALLELOGRAMS = (2, 3)
 _OUTER = (0, 1, 4, 5)
 _ROUNDING = 1e-9  # of the robot's size, by how much rounding may break (21)
 _CLOSES = 1e-6  # of the robot's size, by how much an arm may miss
@@ -58,7 +62,7 @@ class Redundant3T1R(RodLevel):
     inertia: Redundant3T1RInertia
     pose_names = ("x", "y", "z", "theta")
     joint_names = ("x1", "x2", "x3", "x4", "x5", "x6")
-    joint_units = ("m",) * _LIMBS
+    joint_units = ("m",) * LIMBS
     rotations = (3,)
     margins = by_name(*STANDARD, INTERNAL_DETERMINANT, PASSIVE_JOINT, CLEARANCE)
     mirrors = (("y", "theta"), ("z",))
@@ -86,8 +90,8 @@ class Redundant3T1R(RodLevel):
     @staticmethod
     def rail_points(joints: ca.SX, g: SimpleNamespace) -> ca.SX:
         """A_i (3, 6), on the slides."""
-        y = [g.outer_rail_y if i in _OUTER else g.middle_rail_y for i in range(_LIMBS)]
-        columns = [ca.vertcat(joints[i], _SIDE[i] * y[i], _FLOOR[i] * g.outer_rail_z) for i in range(_LIMBS)]
+        y = [g.outer_rail_y if i in _OUTER else g.middle_rail_y for i in range(LIMBS)]
+        columns = [ca.vertcat(joints[i], _SIDE[i] * y[i], _FLOOR[i] * g.outer_rail_z) for i in range(LIMBS)]
         return ca.horzcat(*columns)
 
     @staticmethod
@@ -102,7 +106,7 @@ class Redundant3T1R(RodLevel):
     @staticmethod
     def arm_lengths(g: SimpleNamespace) -> ca.SX:
         """L_i (6,)."""
-        result: ca.SX = ca.vertcat(*(g.outer_arm_length if i in _OUTER else g.middle_arm_length for i in range(_LIMBS)))
+        result: ca.SX = ca.vertcat(*(g.outer_arm_length if i in _OUTER else g.middle_arm_length for i in range(LIMBS)))
         return result
 
     # The closure and its closed forms.
@@ -118,7 +122,7 @@ class Redundant3T1R(RodLevel):
     def _across(pose: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
         """x_bi (6,) and the squared distance of B_i from its rail (6,)."""
         platform = Redundant3T1R.platform_points(pose, g)
-        from_rail = platform[1:, :] - Redundant3T1R.rail_points(ca.SX(_LIMBS, 1), g)[1:, :]
+        from_rail = platform[1:, :] - Redundant3T1R.rail_points(ca.SX(LIMBS, 1), g)[1:, :]
         return platform[0, :].T, ca.sum1(from_rail * from_rail).T
 
     @staticmethod
@@ -140,7 +144,7 @@ class Redundant3T1R(RodLevel):
     @staticmethod
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
         """1, and sqrt(48) d/2 for sqrt(det J_x^T J_x): unit n_i and levers d/2 allow (6/3)^3 (6 d^2/4) at most."""
-        return ca.SX.ones(_LIMBS), ca.sqrt(48) * g.platform_length / 2
+        return ca.SX.ones(LIMBS), ca.sqrt(48) * g.platform_length / 2
 
     # Rods, masses, drawing.
 
@@ -152,15 +156,15 @@ class Redundant3T1R(RodLevel):
         """
         arms, lengths = self.platform_points(pose, g) - self.rail_points(joints, g), self.arm_lengths(g)
         up = ca.SX([0, 0, 1])
-        return [PassiveJoint(up, arms[:, i], lengths[i], end) for end in (0, 1) for i in range(_LIMBS)]
+        return [PassiveJoint(up, arms[:, i], lengths[i], end) for end in (0, 1) for i in range(LIMBS)]
 
     @staticmethod
     def rod_closure(pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
         """Eight rods to one rigid platform, which may tilt."""
         rails, platform = Redundant3T1R.rail_points(joints, g), Redundant3T1R.platform_points(pose, g)
         lengths, rods = Redundant3T1R.arm_lengths(g), []
-        for limb in range(_LIMBS):
-            for side in (-0.5, 0.5) if limb in _PARALLELOGRAMS else (0.0,):
+        for limb in range(LIMBS):
+            for side in (-0.5, 0.5) if limb in PARALLELOGRAMS else (0.0,):
                 offset = ca.vertcat(0, 0, side * g.parallelogram_width)
                 end = platform[:, limb] + offset
                 moved = end + displacement[:3] + ca.cross(displacement[3:], end - pose[:3])
@@ -179,17 +183,7 @@ class Redundant3T1R(RodLevel):
         translation, rotation = self._evaluate(_parallel_conditions, pose)
         return ParallelSingularity(translation[..., 0], rotation[..., 0])
 
-    def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
-        """Slides, rods, platform and payload."""
-        i, bodies = self.inertia, Bodies(self.inertia.rod_middle)
-        rails, platform = self.rail_points(joints, g), self.platform_points(pose, g)
-        for limb in range(_LIMBS):
-            slide, rods = f"slide {limb + 1}", i.rod_mass * (2 if limb in _PARALLELOGRAMS else 1)
-            bodies.particles.append(Particle(slide, i.slide_mass, rails[:, limb]))
-            bodies.rods.append(Rod(rods, (slide, "platform"), rails[:, limb], platform[:, limb]))
-        bodies.particles.append(Particle("platform", i.platform_mass + payload, pose[:3]))
-        bodies.rotors.append(Rotor(i.platform_inertia, pose[3]))
-        return bodies
+    bodies = bodies
 
     @staticmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
@@ -197,10 +191,10 @@ class Redundant3T1R(RodLevel):
         rails, platform = Redundant3T1R.rail_points(joints, g), Redundant3T1R.platform_points(pose, g)
         stretch, half = ca.vertcat(g.outer_arm_length / 4, 0, 0), ca.vertcat(0, 0, g.parallelogram_width / 2)
         lines = {}
-        for i in range(_LIMBS):
+        for i in range(LIMBS):
             lines[f"rail {i + 1}"] = ca.horzcat(rails[:, i] - stretch, rails[:, i] + stretch)
             a, b = rails[:, i], platform[:, i]
-            if i in _PARALLELOGRAMS:
+            if i in PARALLELOGRAMS:
                 lines[f"rods {i + 1}"] = outline(a, b, half)
             else:
                 lines[f"arm {i + 1}"] = ca.horzcat(a, b)
@@ -242,7 +236,7 @@ class Redundant3T1R(RodLevel):
         poses = self._chosen(joints, _CLOSES * self.geometry.size)
         if len(set(self.mode.branches)) == 1:
             return poses
-        return polished(self, poses.reshape(-1, 4), joints.reshape(-1, _LIMBS), 4).reshape(poses.shape)
+        return polished(self, poses.reshape(-1, 4), joints.reshape(-1, LIMBS), 4).reshape(poses.shape)
 
     def paper_forward(self, joints: Array) -> Array:
         """(..., 6) -> (..., 4) what the paper's model gives, which never looks at x_6, to joints of no pose too.

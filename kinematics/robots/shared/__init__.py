@@ -1,10 +1,10 @@
 """What several mechanisms have in common: rotary limbs, paired rods, limbs that coincide."""
 
+from kinematics.robots.shared.arm_masses import ArmInertia, arms_and_rods
 from kinematics.robots.shared.coincident_limbs import ALIKE, HalvesGeometry, twins
 from kinematics.robots.shared.internal_determinant import INTERNAL_DETERMINANT
 from kinematics.robots.shared.paired_rods import RodLevel, outline
 from kinematics.robots.shared.rotary_limbs import (
-    ArmInertia,
     ArmRanges,
     Limbs,
     RotaryLimbs,
@@ -24,6 +24,7 @@ __all__ = [
     "Limbs",
     "RodLevel",
     "RotaryLimbs",
+    "arms_and_rods",
     "central_limbs",
     "columns",
     "height_in_reach",

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -20,15 +19,10 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.machine import (
-    Bodies,
     GeometryRecord,
-    InertiaRecord,
     Pair,
-    Particle,
     PassiveJoint,
-    Rod,
     RodRanges,
-    Rotor,
 )
 from kinematics.model import Mechanism, Mode
 
@@ -128,24 +122,6 @@ def columns(point: ca.SX, count: int) -> ca.SX:
 
 
 @dataclass(frozen=True)
-class ArmInertia(InertiaRecord):
-    """A drive set of the Quattro's class: an assumption of this project, not a datasheet. SI units.
-
-    Attributes:
-        drive: inertia of drive and gear at the joint.
-        arm_mass, arm_centre, arm_factor: the arm's mass, its centre of mass c as a fraction of L, and its inertia about
-            the joint over m c^2.
-        rod_mass: what joins an arm to the platform, one rod or two.
-    """
-
-    drive: float = 0.045
-    arm_mass: float = 0.9
-    arm_centre: float = 0.40
-    arm_factor: float = 1.25
-    rod_mass: float = 0.26
-
-
-@dataclass(frozen=True)
 class ArmRanges(RodRanges):
     """Arms in vertical planes and ball joints of a Delta's kind: an assumption of this project, not a datasheet.
 
@@ -227,23 +203,6 @@ class RotaryLimbs(Mechanism):
     def reach(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """Of each arm and rod [m]."""
         return cls.limbs(g).reach(cls.platform_points(pose, g))
-
-    def limb_bodies(
-        self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, rod_mass: float, platforms: Sequence[str]
-    ) -> Bodies:
-        """Arms with their drives, and from each elbow a rod of `rod_mass` [kg] to the link named in `platforms`."""
-        i, limbs = self.inertia, self.limbs(g)
-        bodies = Bodies(i.rod_middle)
-        swing, elbows, ends = limbs.swing(joints), limbs.elbows(joints), self.platform_points(pose, g)
-        arms = ca.repmat(limbs.arm, joints.numel() // limbs.arm.numel(), 1)
-        for limb in range(joints.numel()):
-            centre = i.arm_centre * arms[limb]
-            arm = f"arm {limb + 1}"
-            bodies.particles.append(Particle(arm, i.arm_mass, limbs.actuators[:, limb] + centre * swing[:, limb]))
-            own = (i.arm_factor - 1) * i.arm_mass * centre**2  # beyond the particle at the centre of mass
-            bodies.rotors.append(Rotor(i.drive + own, joints[limb]))
-            bodies.rods.append(Rod(rod_mass, (platforms[limb], arm), ends[:, limb], elbows[:, limb]))
-        return bodies
 
     @classmethod
     def limb_lines(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinematics import Heli4, InvalidShape, inverse_dynamics
-from kinematics.robots.heli4.heli4 import Heli4Inertia
+from kinematics.robots.heli4.bodies import Heli4Inertia
 from tests.kinematics.by_hand import OBLIQUE, ByHand, cylinder
 from tests.kinematics.dynamics.test_motion import TIMES, pose_and_derivatives
 from tests.kinematics.numeric import differences, lagrange, slope

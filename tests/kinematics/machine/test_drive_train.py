@@ -8,7 +8,7 @@ import pytest
 from kinematics import MECHANISMS, DriveTrain, GoughStewart, Heli4, InvalidValue, inverse_dynamics
 from kinematics.dynamics.actuators import to_actuators
 from kinematics.machine.bodies import UNIFORM, Bodies, Rod
-from kinematics.robots.heli4.heli4 import Heli4Inertia
+from kinematics.robots.heli4.bodies import Heli4Inertia
 
 EACH = pytest.mark.parametrize("kind", MECHANISMS.values(), ids=lambda kind: kind.__name__)
 REST = np.zeros(4)

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
-from kinematics import FviBounds, Heli4, InvalidValue
+from kinematics import FviBounds, Heli4, InvalidValue, kind_of
 from tests.kinematics.by_hand import OBLIQUE, cylinder
 
 BOTH = pytest.mark.parametrize("robot", [Heli4(), Heli4(OBLIQUE)], ids=["prototype", "oblique"])
@@ -77,7 +77,7 @@ def test_a_given_characteristic_length_replaces_the_screws(robot):
     assert np.abs(robot.isotropic(poses, 0.2)[0] * norms.max(-1) - 1).max() < 1e-12
 
 
-LENGTHS = [f.name for f in fields(OBLIQUE) if f.metadata["dimension"] != "angle"]
+LENGTHS = [f.name for f in fields(OBLIQUE) if kind_of(f).dimension != "angle"]
 
 
 @given(st.floats(0.05, 20.0), st.integers(0, 2**31))

@@ -23,6 +23,7 @@ from kinematics import (
     Planar3RPR,
     Planar3RRR,
     Redundant3T1R,
+    kind_of,
 )
 
 EACH = pytest.mark.parametrize("kind", MECHANISMS.values(), ids=list(MECHANISMS))
@@ -263,7 +264,7 @@ def scaled(kind: Any, size: float) -> Any:
     from dataclasses import fields
 
     usual = kind.Geometry()
-    lengths = {f.name for f in fields(usual) if f.metadata["dimension"] in ("length", "length_per_turn")}
+    lengths = {f.name for f in fields(usual) if kind_of(f).dimension in ("length", "length_per_turn")}
     changes = {name: np.asarray(getattr(usual, name)) * size for name in lengths}
     return usual.with_values(**{name: _plain(value) for name, value in changes.items()})
 

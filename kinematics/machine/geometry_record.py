@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from dataclasses import Field, dataclass, field, fields, replace
+from dataclasses import Field, dataclass, fields, replace
 from types import SimpleNamespace
 from typing import Any, Self
 
@@ -13,37 +13,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.errors import InvalidGeometry
-
-Vector = np.ndarray
-Points = tuple[tuple[float, ...], ...]  # rows of numbers
-TURN = 2.0 * math.pi
-
-
-def length(default: float | tuple[float, ...] | Points, *, minimum: float | None = 0.0, doc: str) -> Any:
-    """A length in metres, greater than `minimum` (None: any sign)."""
-    metadata = {"dimension": "length", "minimum": minimum, "doc": doc}
-    return field(default=default, metadata=metadata)
-
-
-def angle(default: float | tuple[float, ...], *, doc: str) -> Any:
-    """An angle in radians."""
-    return field(default=default, metadata={"dimension": "angle", "minimum": None, "doc": doc})
-
-
-def screw_pitch(default: float | tuple[float, ...], *, doc: str) -> Any:
-    """A screw's pitch in metres per turn, of either hand; never zero."""
-    return field(default=default, metadata={"dimension": "length_per_turn", "minimum": None, "doc": doc})
-
-
-def ratio(default: float, *, doc: str) -> Any:
-    """A number > 0 without unit."""
-    return field(default=default, metadata={"dimension": "none", "minimum": 0.0, "doc": doc})
-
-
-def frame(*, doc: str) -> Any:
-    """A homogeneous transform (4, 4), rotation without unit and translation in metres; the identity by default."""
-    identity = tuple(tuple(float(i == j) for j in range(4)) for i in range(4))
-    return field(default=identity, metadata={"dimension": "frame", "minimum": None, "doc": doc})
+from kinematics.machine.geometry_fields import FieldKind, Vector
 
 
 @dataclass(frozen=True)
@@ -65,15 +35,9 @@ class GeometryRecord:
                 raise self._invalid(f.name, given, words)
             if not np.isfinite(array).all():
                 raise self._invalid(f.name, given, "finite values")
-            minimum = f.metadata["minimum"]
-            if minimum is not None and np.any(array <= minimum):
-                raise self._invalid(
-                    f.name,
-                    given,
-                    f"a length > {minimum:g} m" if f.metadata["dimension"] == "length" else f"a number > {minimum:g}",
-                )
-            if f.metadata["dimension"] == "length_per_turn" and np.any(array == 0.0):
-                raise self._invalid(f.name, given, "a pitch other than 0 m/turn")
+            kind = kind_of(f)
+            if not kind.allows(array, array):
+                raise self._invalid(f.name, given, kind.expected)
             object.__setattr__(self, f.name, frozen(array))
 
     @classmethod
@@ -122,13 +86,19 @@ class GeometryRecord:
     @property
     def size(self) -> float:
         """The largest of its lengths [m]: what makes a distance large or small for this robot."""
-        lengths = [np.abs(getattr(self, f.name)).max() for f in fields(self) if f.metadata["dimension"] == "length"]
+        lengths = [np.abs(getattr(self, f.name)).max() for f in fields(self) if kind_of(f).dimension == "length"]
         return float(max(lengths))
 
     @property
     def digest(self) -> str:
         """SHA-256 of the numbers, to tell which geometry a file was made for."""
         return hashlib.sha256(json.dumps(self.as_dict(), sort_keys=True).encode()).hexdigest()
+
+
+def kind_of(f: Field[Any]) -> FieldKind:
+    """Of a field of a geometry record."""
+    kind: FieldKind = f.metadata["kind"]
+    return kind
 
 
 def _shape(f: Field[Any]) -> tuple[int, ...]:

@@ -1,0 +1,31 @@
+"""Heli4's geometry: table 1 of the paper, with the prototype's numbers as defaults."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from kinematics.machine import angle, length, screw_pitch
+from kinematics.robots.shared import HalvesGeometry
+
+UPPER = (0.0, 0.0, 1.0, 1.0)  # which limbs hold the plate that rides on the screw: (7), (8)
+_DEG = math.pi / 180.0
+
+
+@dataclass(frozen=True)
+class Heli4Geometry(HalvesGeometry):
+    """Table 1 of the paper, in metres and radians.
+
+    Raises:
+        InvalidGeometry: besides what any geometry refuses: both limbs of a plate have the same azimuth.
+    """
+
+    base_radius: float = length(0.350, doc="R, of the actuators' axes")
+    platform_radius: float = length(0.041, doc="r, of the plates")
+    arm_length: float = length(0.351, doc="L, actuator to rod")
+    rod_length: float = length(0.800, doc="l, rod")
+    height_step: float = length(0.0, minimum=None, doc="H, actuators 3 and 4 above 1 and 2")
+    plate_offset: float = length(0.041, minimum=None, doc="h, plates above the tool point")
+    pitch: float = screw_pitch(0.050, doc="p, of the screw")
+    azimuths: tuple[float, ...] = angle((0.0, 180 * _DEG, 90 * _DEG, 270 * _DEG), doc="alpha, of the limbs")
+    parallelogram_width: float = length(0.1, doc="d, between the two rods of a limb; not in the paper")
