@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from kinematics.arguments import finite, positive, whole
 from kinematics.arrays import Array, Value, checked
+from kinematics.coordinates import LENGTHS, is_length
 from kinematics.dynamics import (
     JointMotion,
     actuator_motion,
@@ -66,6 +67,7 @@ __all__ = [
     "ARCHITECTURES",
     "CLEARANCE",
     "CORES",
+    "LENGTHS",
     "MECHANISMS",
     "PASSIVE_JOINT",
     "STANDARD",
@@ -123,6 +125,7 @@ __all__ = [
     "friction",
     "from_actuators",
     "inverse_dynamics",
+    "is_length",
     "joint_motion",
     "kind_of",
     "loop_mobility",

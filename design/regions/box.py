@@ -9,7 +9,7 @@ import numpy as np
 
 from design.regions.bounds import Interval, interval
 from design.regions.region import ROUNDING, Region
-from kinematics import Array
+from kinematics import LENGTHS, Array, is_length
 
 
 class Box(Region):
@@ -60,7 +60,7 @@ class Box(Region):
 
     def grown_by(self, share: float, size: float) -> Box:
         """With the size of the region that this is a part of [m]."""
-        by = {name: share * (size if name in ("x", "y", "z") else 1.0) for name in self._intervals}
+        by = {name: share * (size if is_length(name) else 1.0) for name in self._intervals}
         return Box(**{name: (low - by[name], high + by[name]) for name, (low, high) in self._intervals.items()})
 
     def contains(self, poses: Array, names: Sequence[str], slack: float = ROUNDING) -> Array:
@@ -80,6 +80,6 @@ class Box(Region):
 
     def outline(self) -> list[Array]:
         """The box's edges."""
-        sides = [self._intervals.get(name, (0.0, 0.0)) for name in ("x", "y", "z")]
+        sides = [self._intervals.get(name, (0.0, 0.0)) for name in LENGTHS]
         vertices = np.array(list(product(*sides)))
         return [vertices[[i, j]] for i in range(8) for j in range(i + 1, 8) if (i ^ j) in (1, 2, 4)]

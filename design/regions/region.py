@@ -14,7 +14,7 @@ from itertools import product
 import numpy as np
 
 from design.errors import InvalidRegion
-from kinematics import Array
+from kinematics import Array, is_length
 
 ROUNDING = 1e-12  # relative to the largest number between the bounds
 _FEW = 4  # coordinates up to which three values of each are few poses
@@ -63,7 +63,7 @@ class Region(ABC):
     @property
     def size(self) -> float:
         """The largest distance of a bound of x, y or z from 0 [m]: what makes a distance large or small here."""
-        bounds = [bound for name, pair in self.intervals.items() if name in ("x", "y", "z") for bound in pair]
+        bounds = [bound for name, pair in self.intervals.items() if is_length(name) for bound in pair]
         return float(np.abs(bounds).max(initial=0.0))
 
     @abstractmethod

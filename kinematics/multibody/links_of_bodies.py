@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
+from kinematics.coordinates import LENGTHS, is_length
 from kinematics.errors import InvalidValue
 from kinematics.machine import AXES, ORIGIN, Bodies, Link, Tree, TreeJoint
 from kinematics.model import Mechanism, Model
@@ -107,9 +108,9 @@ def _carried_links(robot: Mechanism, model: Model, moved: dict[str, tuple[str, .
 def _carried_joint(robot: Mechanism, model: Model, name: str) -> TreeJoint:
     """x, y, z slide, theta and yaw turn about z, pitch and roll about the axes that these have turned."""
     pose = dict(zip(robot.pose_names, ca.vertsplit(model.pose), strict=True))
-    if name in ("x", "y", "z"):
+    if is_length(name):
         return TreeJoint(name, "slide", AXES["xyz".index(name)], ORIGIN, pose[name])
-    anchor = ca.vertcat(*(pose.get(c, ca.SX(0)) for c in ("x", "y", "z")))
+    anchor = ca.vertcat(*(pose.get(c, ca.SX(0)) for c in LENGTHS))
     axis = AXES[2]
     if name in ("pitch", "roll"):
         axis = ca.vertcat(-ca.sin(pose["yaw"]), ca.cos(pose["yaw"]), 0)
@@ -159,7 +160,7 @@ def _states(robot: Mechanism) -> list[Array]:
     """(m + n,) joints and poses about home; they need not belong together, as each point depends on one kind."""
     rng = np.random.default_rng(0)
     about = np.concatenate([robot.inverse(robot.home), robot.home])
-    lengths = [unit == "m" for unit in robot.joint_units] + [name in ("x", "y", "z") for name in robot.pose_names]
+    lengths = [unit == "m" for unit in robot.joint_units] + [is_length(name) for name in robot.pose_names]
     steps = _FAR * np.where(lengths, robot.geometry.size, 1.0)
     return [about + rng.uniform(-1.0, 1.0, about.size) * steps for _ in range(_TRIES)]
 

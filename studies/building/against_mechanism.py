@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from kinematics import is_length
 from studies.building.geometry_fields import GeometryField, geometry_fields, shape
 from studies.building.hardware import hardware_faults, hardware_tables, joint_unit, subtable
 from studies.errors import KeyPath
@@ -177,7 +178,7 @@ def _within_a_turn(mechanism: type[Mechanism], name: str) -> bool:
 
 
 def _pose_dimension(name: str) -> Dimension:
-    return Dimension.LENGTH if name in {"x", "y", "z"} else Dimension.ANGLE
+    return Dimension.LENGTH if is_length(name) else Dimension.ANGLE
 
 
 def _dimensions(field: GeometryField) -> Key:

@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from kinematics import Array, InvalidValue, Mechanism
+from kinematics import Array, InvalidValue, Mechanism, is_length
 
 SCHOENFLIES = ("x", "y", "z", "theta")
 HIGHEST_ORDER = 4
@@ -216,7 +216,7 @@ def checked_arc_length(s: Array, length: float, order: int) -> Array:
 
 def places(pose_names: Sequence[str]) -> int:
     """How many of the pose's coordinates are the tool point's; they stand first."""
-    return sum(name in ("x", "y", "z") for name in pose_names)
+    return sum(map(is_length, pose_names))
 
 
 def require_poses_of(robot: Mechanism, path: HasPoseNames) -> None:

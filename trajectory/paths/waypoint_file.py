@@ -12,6 +12,7 @@ import math
 from collections.abc import Sequence
 from pathlib import Path as FilePath
 
+from kinematics import is_length
 from trajectory.errors import InvalidPath, WaypointFileError
 from trajectory.paths.rounded_path import RoundedPath
 from trajectory.units import in_si
@@ -60,7 +61,7 @@ def _header(file: FilePath, number: int, line: str, pose_names: Sequence[str]) -
     columns: list[Column] = []
     spellings = {name: (name, "") for name in (*pose_names, _BLEND)}
     for name in (*pose_names, _BLEND):
-        suffix = "mm" if name in ("x", "y", "z", _BLEND) else "deg"
+        suffix = "mm" if is_length(name) or name == _BLEND else "deg"
         spellings[f"{name}_{suffix}"] = (name, suffix)
     for cell in _cells(file, number, line):
         if cell not in spellings:
