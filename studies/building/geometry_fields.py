@@ -1,4 +1,4 @@
-"""The fields of a mechanism's geometry, as a study may give them."""
+"""The fields of a mechanism's geometry that a study may set."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from kinematics import Mechanism
 
 @dataclasses.dataclass(frozen=True)
 class GeometryField:
-    """A field of a mechanism's geometry: `shape` () for a number, (4,) for four.
+    """A field of a mechanism's geometry; its `shape` is () for one number, (4,) for four numbers.
 
-    Every number is above `minimum` [SI]; None allows any sign. No pitch is zero.
+    Every number is above `minimum` [SI]; None allows any sign. A pitch is never zero.
     """
 
     dimension: str
@@ -25,7 +25,7 @@ class GeometryField:
 
 
 def geometry_fields(mechanism: type[Mechanism]) -> dict[str, GeometryField]:
-    """The geometry's fields by name; the prototype's values give the shapes."""
+    """The geometry's fields by name. Their shapes are those of the prototype's values."""
     prototype = mechanism.Geometry()
     return {
         field.name: GeometryField(
@@ -38,7 +38,7 @@ def geometry_fields(mechanism: type[Mechanism]) -> dict[str, GeometryField]:
 
 
 def shape(value: object) -> tuple[int, ...]:
-    """The shape of nested tuples of numbers, () for a number; -1 where entries differ."""
+    """The shape of nested tuples of numbers: () for a number, -1 on an axis whose entries differ in shape."""
     if not isinstance(value, tuple):
         return ()
     inner = {shape(entry) for entry in value}
