@@ -48,7 +48,8 @@ class MapOutcome:
         nodes = " x ".join(map(str, found.map.values.shape[::-1]))
         if math.isinf(found.moved):
             return f"only one map of {nodes} nodes, or a part that the map before did not show: may be far off"
-        return f"the last refinement, to {nodes} nodes, changed the figures by {found.moved:.2g} (tolerance {found.tolerance:g})"
+        changed = f"the last refinement, to {nodes} nodes, changed the figures by {found.moved:.2g}"
+        return f"{changed}; the tolerance is {found.tolerance:g}"
 
     @property
     def none_seen(self) -> str:

@@ -26,7 +26,7 @@ class CycleTable(StudyTable):
     """Lift, span and place lift at once [mm]. The corners are not part of it: give a blend too."""
     place: Annotated[
         tuple[float, float, float] | None,
-        Key("three lengths x, y, z, not straight above the pick; not with a size", LENGTH, place=True),
+        Key("three lengths x, y, z, not straight above or below the pick; not with a size", LENGTH, place=True),
     ] = None
     """The pose where the half cycle ends. It replaces span, heading and rise."""
     lift: Annotated[Positive | None, Field(validate_default=True), Key("a length > 0; or a size instead", LENGTH)] = (
@@ -66,7 +66,7 @@ class CycleTable(StudyTable):
         if len(stated) > 1 or (not stated and info.field_name in ("lift", "span")):
             raise ValueError("given twice, or not at all")
         if info.field_name == "place" and value is not None and value[:2] == info.data.get("pick", ())[:2]:
-            raise ValueError("straight above the pick")
+            raise ValueError("straight above or below the pick")
         return value
 
     @field_validator("rise", "heading")
