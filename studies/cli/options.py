@@ -36,5 +36,5 @@ AllowCodeOption = Annotated[
 ]
 SecondsOption = Annotated[
     float | None,
-    typer.Option("--seconds", help="The time for each long stage [s], in place of the study's table \\[budget]."),
+    typer.Option("--seconds", help="The seconds for each long stage, in place of the study's table \\[budget]."),
 ]

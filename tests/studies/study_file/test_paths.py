@@ -154,7 +154,7 @@ def test_a_way_that_ends_where_it_starts_is_a_closed_cycle_and_no_half(tmp_path:
             "payload_back may give another for the way back",
         ),
         (CYCLE + "lift_mm = 25\n", HELI4, "cycle.span", "a size or a place"),
-        (CYCLE + "lift_mm = 25\nspan = 0.1\nplace = [0, 0, -0.8]\n", HELI4, "cycle.span", "instead of it"),
+        (CYCLE + "lift_mm = 25\nspan = 0.1\nplace = [0, 0, -0.8]\n", HELI4, "cycle.span", "a size or a place instead"),
         (
             CYCLE + "lift_mm = 25\nplace = [-0.15, 0, -0.7]\n",
             HELI4,
