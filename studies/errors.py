@@ -15,9 +15,9 @@ _LONGEST_FOUND = 80  # characters
 
 @dataclass(frozen=True)
 class Fault:
-    """One thing to mend: `key` of `file` at `line` holds `found`, where `expected` was asked.
+    """One fault of a file: `key` at `line` holds `found`; `expected` says what would be right.
 
-    `key` is "" and `line` None when the file as a whole is meant.
+    `key` is "" and `line` is None if the whole file is at fault.
     """
 
     file: Path
@@ -33,9 +33,9 @@ class Fault:
 
 
 class StudyError(LinkwrightError):
-    """A study file cannot be used; `str()` gives one line a fault.
+    """A study file cannot be used; `str()` gives a line for each fault.
 
-    `faults` holds them all by line; `file`, `key`, `line`, `found`, `expected` are the first one's.
+    `faults` holds all faults in the order of lines; `file`, `key`, `line`, `found`, `expected` are those of the first.
     """
 
     def __init__(self, faults: Sequence[Fault]) -> None:
@@ -51,7 +51,7 @@ class StudyError(LinkwrightError):
 
 @dataclass(frozen=True)
 class Failed:
-    """A requirement that is not met: what was wanted, the worst value found, and at which pose (empty: on a path)."""
+    """A requirement that is not met: the wanted bound, the worst value found, and its pose (empty on a path)."""
 
     margin: str
     at_least: float
@@ -74,7 +74,7 @@ class RequirementFailed(LinkwrightError):
 
 
 class ApproachFailed(LinkwrightError):
-    """There is no approach from `home` to `start`, the cycle's; `cause` says why, and its exit status stays."""
+    """There is no approach from `home` to `start` of the cycle. `cause` says why and gives the exit status."""
 
     def __init__(self, home: tuple[float, ...], start: tuple[float, ...], cause: LinkwrightError) -> None:
         self.home, self.start, self.cause = home, start, cause
@@ -83,7 +83,7 @@ class ApproachFailed(LinkwrightError):
 
 
 class HomeOutOfReach(LinkwrightError):
-    """The robot cannot stand in its home `pose`; `cause` says which limb cannot reach it."""
+    """The robot cannot reach its home `pose`; `cause` names the limb that cannot."""
 
     def __init__(self, pose: tuple[float, ...], cause: LinkwrightError) -> None:
         self.pose, self.cause = pose, cause
@@ -100,7 +100,7 @@ def _pose(pose: tuple[float, ...]) -> str:
 
 
 def dotted(path: KeyPath) -> str:
-    """`path` as the file spells it; a row of an array of tables is told by its line, not by a number."""
+    """`path` as the file spells it. A row of an array of tables has no number here; its line tells it from others."""
     names = (part for part in path if isinstance(part, str))
     return _cut(".".join(name if re.fullmatch(r"[\w-]+", name) else json.dumps(name) for name in names))
 

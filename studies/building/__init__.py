@@ -1,4 +1,4 @@
-"""From what a study says to the objects that compute."""
+"""Builds the robot, the region, the path and the other objects that a study describes."""
 
 from studies.building.inside_region import leaving
 from studies.building.load import load_study

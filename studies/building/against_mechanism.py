@@ -1,4 +1,4 @@
-"""What a study may say of its mechanism: the keys that follow from it, and the faults that only it shows."""
+"""Checks of a study against its mechanism: the keys that depend on it, and the faults that only it shows."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ if TYPE_CHECKING:
     from kinematics import Mechanism
 
 _PER_JOINT = ("limits", "approach", "drive")  # tables of the trajectory
-_TURN = 2 * math.pi * (1 + 1e-12)  # converting degrees rounds
+_TURN = 2 * math.pi * (1 + 1e-12)  # the conversion of degrees rounds
 
 
 def study_table(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> Table:
-    """The keys of a study of `mechanism`; the region's follow from its kind in `raw`."""
+    """The keys of a study of `mechanism`. Those of the region depend on its kind in `raw`."""
     fields = geometry_fields(mechanism)
     lengths = Key("a list out of", choices=_lengths(fields))
     margins = Key("one of", choices=tuple(mechanism.margins))
@@ -63,7 +63,10 @@ def study_table(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> Table:
 
 
 def _trajectory_table(pose_names: Sequence[str], joints: int) -> Table:
-    """The waypoints' coordinates, and only what the pose has of the cycle's angles; in a plane there is no cycle."""
+    """The keys of `[trajectory]`: coordinates of waypoints, and the cycle's angles that the pose has.
+
+    A planar robot has no cycle.
+    """
     lacking = {
         "turn": not {"theta", "yaw"} & set(pose_names),
         "start_angle": not {"theta", "yaw"} & set(pose_names),
@@ -81,7 +84,7 @@ def _trajectory_table(pose_names: Sequence[str], joints: int) -> Table:
 
 
 def at_odds(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:
-    """The paths of `data` (in SI) at odds with `mechanism`; what the models reject is left to them."""
+    """The paths of `data` (in SI) that do not fit `mechanism`. The models report what they reject themselves."""
     fields = geometry_fields(mechanism)
     for name, value in subtable(data, "geometry").items():
         field = fields[name]
@@ -119,14 +122,14 @@ def at_odds(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[Key
 
 
 def _counted(node: Key | Table, joints: int) -> Key | Table:
-    """With the number of joints in its words."""
+    """The key or table with the number of joints in its words."""
     if isinstance(node, Key):
         return replace(node, expected=node.expected.replace("a joint", f"a joint of the {joints}"))
     return node.updated({name: _counted(inner, joints) for name, inner in node.keys.items()})
 
 
 def _uncounted(trajectory: Mapping[str, Any], joints: int) -> Iterator[KeyPath]:
-    """Lists of one value a joint that are of another length; a range is a pair of numbers, not a list."""
+    """The paths of lists per joint that have a wrong length. A range is a pair of numbers, not such a list."""
     for table in _PER_JOINT:
         for name, value in subtable(trajectory, table).items():
             several = isinstance(value, tuple) and (name != "position" or any(isinstance(v, tuple) for v in value))
@@ -163,7 +166,7 @@ def _region_table(mechanism: type[Mechanism], region: object) -> Table:
 
 
 def _coordinates(mechanism: type[Mechanism], kind: object) -> tuple[str, ...]:
-    """The pose coordinates that a region of this kind gives one by one."""
+    """The pose coordinates that have their own key in a region of this kind."""
     disc = ("x", "y") if kind == "cylinder" else ()
     return tuple(name for name in mechanism.pose_names if name not in disc)
 
@@ -189,7 +192,7 @@ def _dimensions(field: GeometryField) -> Key:
 
 def _bounds(field: GeometryField) -> Key:
     pairs = (
-        f", one list of {math.prod(field.shape)} such pairs, entry by entry; low = high fixes an entry, but not all"
+        f", or a list of {math.prod(field.shape)} such pairs, one an entry; low = high fixes an entry, but not all"
         if field.shape
         else ""
     )

@@ -1,4 +1,4 @@
-"""The fields of a mechanism's geometry, as a study may give them."""
+"""The fields of a mechanism's geometry that a study may set."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ class GeometryField:
 
 
 def geometry_fields(mechanism: type[Mechanism]) -> dict[str, GeometryField]:
-    """The geometry's fields by name; the prototype's values give the shapes."""
+    """The geometry's fields by name. Their shapes are those of the prototype's values."""
     prototype = mechanism.Geometry()
     return {f.name: GeometryField(kind_of(f), shape(getattr(prototype, f.name))) for f in fields(prototype)}
 
 
 def shape(value: object) -> tuple[int, ...]:
-    """The shape of nested tuples of numbers, () for a number; -1 where entries differ."""
+    """The shape of nested tuples of numbers: () for a number, -1 on an axis whose entries differ in shape."""
     if not isinstance(value, tuple):
         return ()
     inner = {shape(entry) for entry in value}

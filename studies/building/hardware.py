@@ -1,4 +1,4 @@
-"""The masses, drives and joint ranges that a study gives its mechanism: keys, faults, and the records that compute."""
+"""The masses, drives and joint ranges that a study sets: their keys, their faults, and the mechanism's records."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ if TYPE_CHECKING:
 
 _WORDS = {
     "rest": "three finite coordinates",
-    "passive": "two angles above 0, at most half a turn: at the drives' ends of the rods, at the platform's",
-    "rod_middle": "a share from 0 to 1",
+    "passive": "two angles above 0, at most half a turn: at the rods' ends on the arms, at those on the platform",
+    "rod_middle": "a number from 0 to 1",
     "screw_lead": "a number above 0",
 }
 _JOINTS: dict[tuple[str, ...], Dimension] = {("m",): Dimension.LENGTH, ("rad",): Dimension.ANGLE}
 
 
 def inertia_of(study: Study) -> InertiaRecord:
-    """The mechanism's masses with the study's own in their places."""
+    """The mechanism's masses; those that the study sets replace the mechanism's own."""
     masses: dict[str, Any] = dict(study.inertia.masses)
     drive_train = DriveTrain(**study.inertia.drive_train.model_dump(exclude_none=True))
     return study.mechanism_class.Inertia(**masses, drive_train=drive_train)
 
 
 def ranges_of(study: Study) -> JointRanges:
-    """The mechanism's joint ranges with the study's own in their places."""
+    """The mechanism's joint ranges; those that the study sets replace the mechanism's own."""
     ranges: dict[str, Any] = dict(study.ranges)
     return study.mechanism_class.Ranges(**ranges)
 
@@ -43,7 +43,7 @@ def hardware_tables(mechanism: type[Mechanism]) -> dict[str, Table]:
     masses = {f.name: _key(f, mechanism.Inertia.dimensions, " >= 0") for f in fields(mechanism.Inertia)}
     ranges = {f.name: _key(f, mechanism.Ranges.dimensions) for f in fields(mechanism.Ranges)}
     joints = Key(
-        f"finite low < high, once or for each of {len(mechanism.joint_names)} joints", joint_unit(mechanism), place=True
+        f"finite low < high, one pair or {len(mechanism.joint_names)} pairs", joint_unit(mechanism), place=True
     )
     return {
         "inertia": Table({**masses, **table_of(InertiaTable).keys}),
@@ -52,7 +52,7 @@ def hardware_tables(mechanism: type[Mechanism]) -> dict[str, Table]:
 
 
 def joint_unit(mechanism: type[Mechanism]) -> Dimension:
-    """What all joints measure; none where they differ."""
+    """The dimension of the joints' positions; NONE if joints differ in it."""
     return _JOINTS.get(tuple(sorted(set(mechanism.joint_units))), Dimension.NONE)
 
 
@@ -64,7 +64,7 @@ def _key(field: Field[Any], dimensions: Mapping[str, str], more: str = "") -> Ke
 
 
 def hardware_faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[KeyPath]:
-    """The paths of `data` (in SI) that the mechanism's records refuse, each value by itself."""
+    """The paths of `data` (in SI) that the mechanism's records refuse; each value is tried alone."""
     count, inertia = len(mechanism.joint_names), subtable(data, "inertia")
     masses = {name: value for name, value in inertia.items() if name != "drive_train"}
     of_records: list[tuple[KeyPath, type[Any], Mapping[str, Any]]] = [
@@ -81,6 +81,6 @@ def hardware_faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iter
 
 
 def subtable(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    """A table of `data`; empty where there is none, or something else."""
+    """A table of `data`; empty if the key is missing or is not a table."""
     table = data.get(name)
     return table if isinstance(table, dict) else {}

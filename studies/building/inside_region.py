@@ -1,8 +1,8 @@
 """Proof that a way stays inside a region, at every pose.
 
-The way gives bounds of the pose over intervals of itself, and these are halved where they reach out of the region. A
-region is convex, and bounded coordinate by coordinate but for its circle about the z axis: a box of poses is inside
-where its lower, its upper and its outermost corner are.
+The way gives bounds of the pose over each of its intervals. An interval whose bounds leave the region is halved. A
+region is convex. It bounds each coordinate alone, except for its circle about the z axis. So a box of poses is inside
+if three corners are: the lowest, the highest, and the one furthest from the z axis.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from design import Region
 from kinematics import Array, Value
 from trajectory import Way
 
-TOLERANCE = 1e-6  # rad, or of the region's size, by which a way may leave it: it may run along the boundary
-_START = 64  # intervals, at least, that the way is cut into first
-_SMALLEST = 1e-9  # of the length: narrower intervals are not halved
+TOLERANCE = 1e-6  # rad, or times the region's size: a way may leave by this, as it may run along the boundary
+_START = 64  # the way is first cut into at least so many intervals
+_SMALLEST = 1e-9  # times the way's length: narrower intervals are not halved
 
 
 @dataclass(frozen=True, eq=False)
 class Leaving(Value):
-    """Where a way is outside the region, or could not be proved not to be.
+    """A pose where a way is outside the region, or cannot be proved to be inside.
 
     Attributes:
-        pose: (n,) the one furthest out, of the ends and middles of the intervals looked at.
-        room: how far it is inside, so negative [m or rad].
+        pose: (n,) the pose furthest outside, of the ends and middles of the tested intervals.
+        room: its distance inside the region's boundary, so negative [m or rad].
     """
 
     pose: Array
@@ -35,7 +35,7 @@ class Leaving(Value):
 
 
 def leaving(region: Region, way: Way, names: Sequence[str]) -> Leaving | None:
-    """The pose of a way that is furthest outside; None where all of it is proved to be inside, to `TOLERANCE`."""
+    """The pose of a way that is furthest outside; None if the whole way is proved to be inside, to `TOLERANCE`."""
     grown = region.grown(TOLERANCE)
     edges = np.unique(np.concatenate([way.knots, np.linspace(0.0, way.length, _START + 1)]))
     low, high = edges[:-1], edges[1:]

@@ -1,4 +1,4 @@
-"""From a `study.toml` to a checked `Study`, with every fault of the file reported at once."""
+"""Read a `study.toml` into a checked `Study`. All faults of the file are reported at once."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from studies.errors import Fault, KeyPath, StudyError, spelled
 from studies.study_file import Conversion, Finding, Key, Study, Table, TomlFile, WaypointTable, table_of
 from trajectory import InvalidPath, read_waypoints
 
-# Without a known mechanism nothing can be said about these.
+# These keys can be checked only if the mechanism is known.
 _OF_THE_MECHANISM = ("geometry", "inertia", "ranges", "region", "home", "optimise", "certify", "requirement")
 
 
@@ -24,7 +24,7 @@ def load_study(file: TomlFile, allow_code: bool = False) -> Study:
 
     Args:
         file: as `read_toml` reads it.
-        allow_code: whether the module that the study may name for its mechanism may run.
+        allow_code: whether the Python module that the study names for its mechanism may run.
 
     Raises:
         StudyError: it holds every fault with its key and line.
@@ -59,20 +59,22 @@ def load_study(file: TomlFile, allow_code: bool = False) -> Study:
 
 
 def _with_waypoints(study: Study, file: TomlFile, conversion: Conversion, pose_names: tuple[str, ...]) -> Study:
-    """The study with the waypoints of the file that it names, so that they belong to its digest.
+    """The study with the waypoints of the file that it names, so that its digest includes them.
 
-    Raises StudyError where a waypoint of the study itself does not fit, WaypointFileError where one of the file.
+    Raises:
+        StudyError: a waypoint of the study itself does not fit.
+        WaypointFileError: a waypoint of the file does not fit.
     """
     if study.trajectory is None or study.trajectory.path is None:
         return study
     path, key = study.trajectory.path, ("trajectory", "path")
     if (path.file is None) == (not path.waypoint):
         found = "neither a file nor waypoints" if path.file is None else "a file and waypoints"
-        raise StudyError([file.fault(key, found, "one of the two")])
+        raise StudyError([file.fault(key, found, "either a file or waypoints")])
     if path.file is not None:
         beside = file.path.parent / path.file
         if beside.suffix.lower() != ".csv" or not beside.is_file():
-            what = "no such file" if not beside.exists() else "no CSV file"
+            what = "which does not exist" if not beside.exists() else "which is no CSV file"
             found = f"{spelled(path.file)}, {what}"
             raise StudyError([file.fault((*key, "file"), found, "a .csv file of waypoints beside the study")])
         read = read_waypoints(beside, pose_names)
@@ -97,7 +99,7 @@ def _with_waypoints(study: Study, file: TomlFile, conversion: Conversion, pose_n
 
 
 def _without_the_mechanism_s(raw: dict[str, Any]) -> dict[str, Any]:
-    """The tables and rows that do not follow from the mechanism."""
+    """The tables and rows that do not depend on the mechanism."""
     data = {key: raw[key] for key in raw if key not in _OF_THE_MECHANISM}
     trajectory = data.get("trajectory")
     if isinstance(trajectory, dict) and isinstance(trajectory.get("path"), dict):
@@ -107,7 +109,7 @@ def _without_the_mechanism_s(raw: dict[str, Any]) -> dict[str, Any]:
 
 
 def _mechanism(file: TomlFile, conversion: Conversion, allow_code: bool) -> NamedMechanism | None:
-    """What the study names; None where none can be had, and a finding where the key's own words say too little."""
+    """The mechanism that the study names, or None. A finding is added if the key's own words do not explain why."""
     name = file.data.get("mechanism")
     if not isinstance(name, str):
         return None
@@ -122,11 +124,11 @@ def _invalid(error: ValidationError, table: Table) -> Iterator[KeyPath]:
     """The SI paths that the models reject."""
     for detail in error.errors(include_url=False, include_context=False, include_input=False):
         if detail["loc"] == ("mechanism_class",):
-            continue  # what is wrong with the mechanism is told at its name
+            continue  # a fault of the mechanism is reported at its name
         path: list[str | int] = []
         node = table
         for part in detail["loc"]:
-            # The rest of pydantic's path tells which variant of a union failed, or which entry of an array.
+            # The rest of pydantic's path names the variant of a union that failed, or the entry of an array.
             if isinstance(part, int) and node.rows:
                 path.append(part)
             elif isinstance(part, str) and part in node.keys:
@@ -135,7 +137,7 @@ def _invalid(error: ValidationError, table: Table) -> Iterator[KeyPath]:
                 if isinstance(inner, Key):
                     break
                 node = inner
-        # A region of no known kind is rejected as a whole.
+        # A region of an unknown kind is rejected as a whole.
         yield (*path, "kind") if detail["type"].startswith("union_tag") else tuple(path)
 
 
@@ -144,7 +146,7 @@ def _faults(file: TomlFile, table: Table, conversion: Conversion, wrong: set[Key
     told = {finding.path for finding in conversion.findings}
     for path in sorted(wrong, key=str):
         if path in conversion.reported and path not in conversion.spelling:
-            continue  # a misspelt key is not missing as well
+            continue  # a misspelt key is not also reported as missing
         spelling = conversion.spelling.get(path, path)
         if spelling in told:
             continue

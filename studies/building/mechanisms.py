@@ -1,6 +1,6 @@
-"""The mechanism that a study names: Linkwright's own, an installed package's, or a class in a module of the user's.
+"""The mechanism that a study names: one of Linkwright, of an installed package, or a class in a user's module.
 
-The last must be allowed: a study from elsewhere must not run code by being read.
+A user's module must be allowed to run: a study from a stranger must not run code when it is read.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from kinematics import LinkwrightError, Mechanism
 from studies.errors import spelled
 from studies.study_file import Key
 
-GROUP = "linkwright.mechanisms"  # of entry points
+GROUP = "linkwright.mechanisms"  # the group of entry points
 _IN_MODULE = re.compile(r"([^\W\d]\w*(?:\.[^\W\d]\w*)*):([^\W\d]\w*)")
 
 
 class MechanismRefused(LinkwrightError):
-    """No mechanism can be had by the name that a study gives: what was found, and what would be right."""
+    """The name that a study gives leads to no usable mechanism; it says what was found and what would be right."""
 
     def __init__(self, name: str, found: str, expected: str) -> None:
         self.name, self.found, self.expected = name, found, expected
@@ -47,7 +47,7 @@ def mechanism_names() -> tuple[str, ...]:
 
 
 def installed_mechanisms() -> dict[str, EntryPoint]:
-    """By name; none is loaded."""
+    """The entry points of mechanisms by name. None is loaded."""
     return {point.name: point for point in entry_points(group=GROUP) if point.name not in _own()}
 
 
@@ -55,13 +55,13 @@ def mechanism_named(name: str, folder: Path, allow_code: bool) -> NamedMechanism
     """The mechanism that a study in a folder names.
 
     Args:
-        name: one of `mechanism_names`, or "module:Class"; a file `module.py` in the folder comes before a module on
+        name: one of `mechanism_names`, or "module:Class". A file `module.py` in the folder is preferred to a module on
             Python's path.
-        folder: the study's.
+        folder: the study's folder.
         allow_code: whether such a module may run.
 
     Raises:
-        MechanismRefused: there is none of this name, it may not run, or it is no mechanism that can be used.
+        MechanismRefused: there is no such mechanism, its module may not run, or it cannot be used.
     """
     if name in (own := _own()):
         return NamedMechanism(own[name], "")
@@ -77,7 +77,7 @@ def mechanism_named(name: str, folder: Path, allow_code: bool) -> NamedMechanism
     where = f"{beside.name} beside the study" if beside.is_file() else f"the module {module_name}"
     if not allow_code:
         expected = f"--allow-code with the command, if you trust {where}; or one of {', '.join(mechanism_names())}"
-        raise MechanismRefused(name, f"{spelled(name)}, code of {where}, which does not run by itself", expected)
+        raise MechanismRefused(name, f"{spelled(name)}, code of {where}, which may not run", expected)
     if beside.is_file():
         module = _ran(name, where, lambda: _module_of(beside))
     else:
@@ -94,7 +94,7 @@ def _own() -> Mapping[str, type[Mechanism]]:
 
 
 def _module_of(file: Path) -> ModuleType:
-    """The module in a file; the same file with the same content is run once."""
+    """The module in a file. The same file with the same content runs once."""
     digest = hashlib.sha256(str(file.resolve()).encode() + file.read_bytes()).hexdigest()
     unique = f"{file.stem}_{digest[:16]}"  # another study may have another file of the same name beside it
     if unique in sys.modules:
@@ -112,10 +112,10 @@ def _module_of(file: Path) -> ModuleType:
 
 
 def _ran(name: str, where: str, run: Callable[[], Any]) -> Any:
-    """What someone else's code gives.
+    """The result of someone else's code.
 
     Raises:
-        MechanismRefused: it raises, with the line on which it does.
+        MechanismRefused: the code raises an error; the message has its line.
     """
     try:
         return run()
@@ -132,11 +132,11 @@ def _raising(name: str, where: str, error: BaseException) -> MechanismRefused:
     last = traceback.extract_tb(error.__traceback__)[-1]
     place = f"{error.filename}:{error.lineno}" if isinstance(error, SyntaxError) else f"{last.filename}:{last.lineno}"
     found = f"{where} that raises {type(error).__name__}: {error} ({place})"
-    return MechanismRefused(name, found, "code of a mechanism that runs")
+    return MechanismRefused(name, found, "code that runs without an error")
 
 
 def _usable(name: str, kind: object) -> NamedMechanism:
-    """Checked as far as its prototype and its symbolic model show."""
+    """The class, after a check that its prototype and its symbolic model can be built."""
     if not _is_mechanism(kind):
         raise MechanismRefused(name, f"{kind!r:.60}", "a class derived from kinematics.Mechanism")
     if lacking := kind.lacking():

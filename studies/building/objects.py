@@ -1,4 +1,4 @@
-"""From what a study says to the objects that compute."""
+"""Builds the robot, region, synthesis, path and limits that a study describes."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ OBJECTIVE = "fvi"
 
 
 def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
-    """The study's mechanism, masses and joint ranges; `geometry` in place of the prototype with the study's changes."""
+    """The robot with the study's masses and joint ranges; `geometry` replaces the study's own geometry."""
     kind = study.mechanism_class
     joints = None if study.home is None else study.home.joints
     return kind(
@@ -55,7 +55,7 @@ def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
 
 
 def _home_pose(study: Study, pose_names: Sequence[str]) -> list[float]:
-    """(n,) the study's own coordinates, the others in the middle of the region."""
+    """(n,) the coordinates that the study gives; the others are in the middle of the region."""
     given = {} if study.home is None else study.home.coordinates
     middle = region_of(study).intervals
     return [given.get(name, sum(middle[name]) / 2) for name in pose_names]
@@ -83,7 +83,7 @@ def region_of(study: Study) -> Region:
 
 
 def fvi_bounds_of(study: Study) -> FviBounds:
-    """What the FVI is measured against: the study's, or the mechanism's own."""
+    """The bounds that the FVI compares: the study's, or the mechanism's own."""
     if study.fvi is None:
         return study.mechanism_class.fvi_bounds
     f = study.fvi
@@ -91,7 +91,7 @@ def fvi_bounds_of(study: Study) -> FviBounds:
 
 
 def problem_of(study: Study) -> Problem:
-    """The synthesis that the study asks for; without an `[optimise]` table, one with nothing to vary."""
+    """The synthesis that the study asks for. Without a table `[optimise]` it has no variables."""
     robot = robot_of(study)
     own_length = study.fvi.characteristic_length if study.fvi else None
     variables: list[Bounds] = []
@@ -113,10 +113,10 @@ def problem_of(study: Study) -> Problem:
 
 
 def path_of(asked: TrajectoryTable, pose_names: tuple[str, ...]) -> Path:
-    """The path there, of poses with these coordinates.
+    """The path of the way there, for poses with these coordinates.
 
     Raises:
-        InvalidPath: of a waypoint that does not fit.
+        InvalidPath: a waypoint does not fit.
     """
     if asked.cycle is not None:
         return adept_cycle(asked.cycle.model_dump(), pose_names=pose_names)
@@ -127,10 +127,10 @@ def path_of(asked: TrajectoryTable, pose_names: tuple[str, ...]) -> Path:
 
 
 def require_cycle_inside(study: Study, file: TomlFile) -> None:
-    """Prove that the cycle's path stays where the geometry is verified.
+    """Prove that the cycle's path stays inside the region, where the geometry is verified.
 
     Raises:
-        StudyError: it leaves the region, with the pose at which it does.
+        StudyError: the path leaves the region; the message has a pose outside.
     """
     if study.trajectory is None:
         return
@@ -140,7 +140,7 @@ def require_cycle_inside(study: Study, file: TomlFile) -> None:
         pose = ", ".join(f"{v:.4g}" for v in found.pose)
         key = travelled(file)
         expected = f"a {key[-1]} inside the region, {region_of(study)}"
-        raise StudyError([file.fault(key, f"the pose ({pose}) on it", expected)])
+        raise StudyError([file.fault(key, f"the pose ({pose}) on the path", expected)])
 
 
 def drive_of(drive: DriveTable) -> Drive:
@@ -149,13 +149,13 @@ def drive_of(drive: DriveTable) -> Drive:
 
 
 def drive_file_names(study: Study, file: TomlFile, asked_for: Sequence[str] | None) -> list[str]:
-    """The drive files' names, from writing those of the cycle's path to nowhere before hours of work go into them.
+    """The drive files' names. A trial at rest along the path finds early what a format cannot express.
 
     Args:
-        asked_for: formats that the command line has in place of the study's own.
+        asked_for: formats of the command line, which replace the study's own.
 
     Raises:
-        StudyError: a format cannot say what the study asks for.
+        StudyError: a format cannot express what the study asks for.
     """
     asked = study.trajectory
     if asked is None:
@@ -174,7 +174,7 @@ def drive_file_names(study: Study, file: TomlFile, asked_for: Sequence[str] | No
 
 
 def _along(robot: Mechanism, path: Path, period: float) -> Setpoints:
-    """Set-points at rest all along the path; zero where a limb cannot reach, which is told elsewhere."""
+    """Set-points along the path with zero speed. Where a limb cannot reach, they are zero; other checks report that."""
     (poses,) = path.evaluate(np.linspace(0.0, path.length, 101), 0)
     joints = np.nan_to_num(to_actuators(robot, robot.inverse(poses)))
     table = np.hstack([np.arange(101)[:, None] * period, poses, joints, np.zeros((101, 3 * joints.shape[1]))])
@@ -188,7 +188,7 @@ def limits_of(limits: LimitsTable) -> Limits:
 
 
 def timing_of(study: Study) -> tuple[TimingLaw, tuple[str, ...]]:
-    """The study's timing law, and the limits that it is run without although the study may set them."""
+    """The study's timing law, and the names of limits that this law ignores even if the study sets them."""
     asked = study.trajectory
     assert asked is not None
     law = law_named(asked.law)
@@ -196,7 +196,7 @@ def timing_of(study: Study) -> tuple[TimingLaw, tuple[str, ...]]:
 
 
 def pose_bounds_of(study: Study) -> PoseBounds:
-    """The study's region, as the free law takes it."""
+    """The study's region as bounds of the pose, for the free law."""
     region = region_of(study)
     low, high = zip(*(region.intervals[name] for name in study.mechanism_class.pose_names), strict=True)
     count = places(study.mechanism_class.pose_names)
@@ -204,7 +204,7 @@ def pose_bounds_of(study: Study) -> PoseBounds:
 
 
 def approach_limits(asked: ApproachTable, drives: Limits, joints: int) -> Limits:
-    """The approach's own limits, nowhere above the drives', and what else of these a move keeps."""
+    """The approach's own limits, lowered to the drives' limits, and the other drive limits that a move keeps."""
     own = Limits(asked.speed, asked.acceleration, jerk=asked.jerk)
     merged: dict[str, Any] = {}
     for name in ("speed", "acceleration", "jerk"):

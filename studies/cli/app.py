@@ -1,4 +1,4 @@
-"""The command line. Heavy imports wait until a command runs, so that help comes at once."""
+"""The command line. Heavy modules are imported only when a command runs, so that help appears at once."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
     help="Design fast parallel robots, verify the design, and write the set-points that their drives run.",
-    epilog="Exit status: 0 all holds, 1 a requirement fails, 2 the input is wrong.",
+    epilog="Exit status: 0 if all holds, 1 if a requirement fails, 2 if the input is wrong.",
 )
 
 
@@ -68,11 +68,11 @@ def certify(
     study: StudyArgument,
     margin: Annotated[
         str | None,
-        typer.Option("--margin", help="Only this one (default: those that the study names)."),
+        typer.Option("--margin", help="Prove only this margin (default: those that the study names)."),
     ] = None,
     at_least: Annotated[
         float | None,
-        typer.Option("--at-least", help="The bound to prove for --margin (default: the required one, or the best)."),
+        typer.Option("--at-least", help="Prove this bound of --margin (default: the required bound, else the best)."),
     ] = None,
     out: Annotated[
         Path | None, typer.Option("--out", help="Folder for the certificates (default: none are written).")
@@ -83,7 +83,7 @@ def certify(
     force: ForceOption = False,
     allow_code: AllowCodeOption = False,
 ) -> None:
-    """Prove the requirements of the committed optimum at every pose of the region; exits 1 if one is not.
+    """Prove the requirements of the committed optimum at every pose of the region. Exits 1 if one is not proved.
 
     linkwright certify heli4 --out results
 
@@ -120,7 +120,7 @@ def trajectory(
     force: ForceOption = False,
     allow_code: AllowCodeOption = False,
 ) -> None:
-    """Time and verify the study's cycle on its committed optimum; with --out, write the set-points.
+    """Time and verify the cycle of the study's committed optimum. With --out, also write the set-points.
 
     linkwright trajectory cycle_reference --law toppra
 
@@ -137,12 +137,14 @@ def trajectory(
     if law is not None and law not in LAWS:
         raise InvalidValue("--law", law, f"one of {', '.join(LAWS)}")
     if formats and out is None:
-        raise InvalidValue("--format", ", ".join(formats), "--out with it, the folder for the files")
+        raise InvalidValue("--format", f"{', '.join(formats)} without --out", "--out with the folder for the files")
     for name in formats or ():
         format_named(name)
     file, asked, drives = load(study, allow_code, formats)
     if asked.trajectory is None:
-        raise InvalidValue(f"study {asked.name}", "no [trajectory] table", "one with the cycle to time")
+        raise InvalidValue(
+            f"study {asked.name}", "no [trajectory] table", "a [trajectory] table with a cycle or a path"
+        )
     robot = robot_for(file, asked, prototype)
     folder = output_folder(out, drives, force)
     if law is not None:
@@ -163,7 +165,7 @@ def report(
     force: ForceOption = False,
     allow_code: AllowCodeOption = False,
 ) -> None:
-    """Write the report and the set-points of the committed optimum; its proofs are replayed, nothing is optimised.
+    """Write the report and the set-points of the committed optimum. Proofs are checked again; nothing is optimised.
 
     linkwright report heli4 --out results
     """
@@ -187,17 +189,20 @@ def report(
 def export(
     study: StudyArgument,
     out: Annotated[Path, typer.Option("--out", help="The file to write.")],
-    format_: Annotated[Literal["mjcf"], typer.Option("--format", help="MJCF, MuJoCo's format.")] = "mjcf",  # noqa: ARG001
+    format_: Annotated[Literal["mjcf"], typer.Option("--format", help="The file's format: MJCF, for MuJoCo.")] = "mjcf",  # noqa: ARG001
     rods: Annotated[
         Literal["split", "uniform"] | None,
-        typer.Option("--rods", help="Masses at the rods' ends, or rods as bodies (default: as the study has it)."),
+        typer.Option(
+            "--rods",
+            help="split: half of a rod's mass at each end; uniform: each rod is a body (default: the study's choice).",
+        ),
     ] = None,
     json: JsonOption = False,
     prototype: PrototypeOption = False,
     force: ForceOption = False,
     allow_code: AllowCodeOption = False,
 ) -> None:
-    """Write the committed optimum as a multibody model for a simulator, at the cycle's start or at home.
+    """Write a simulator's model of the committed optimum. It stands at the cycle's start, or at home without a cycle.
 
     linkwright export heli4 --out heli4.xml --rods uniform
     """
@@ -220,13 +225,15 @@ def export(
 def check(
     studies: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[STUDY ...]", help="Names or paths (default: all that have an optimum)."),
+        typer.Argument(
+            metavar="[STUDY ...]", help="Names or paths of studies (default: all with a committed optimum)."
+        ),
     ] = None,
     json: JsonOption = False,
-    verbose: Annotated[bool, typer.Option("--verbose", help="Show the claims that hold, too.")] = False,
+    verbose: Annotated[bool, typer.Option("--verbose", help="Also show the claims that hold.")] = False,
     allow_code: AllowCodeOption = False,
 ) -> None:
-    """Verify committed optimum.toml files again, figure by figure; for CI.
+    """Compute every figure of committed optimum.toml files again and compare. Exits 1 if one differs.
 
     linkwright check heli4 my_robot/study.toml --json
     """
@@ -246,5 +253,5 @@ def check(
 
 
 def main() -> None:
-    """Entry point: an error on purpose becomes its message and its exit status, never a traceback."""
+    """Entry point. A `LinkwrightError` is shown as a message and an exit status, never as a traceback."""
     ended_by(app)

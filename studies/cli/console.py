@@ -24,9 +24,9 @@ from trajectory.drive_files import FORMATS
 
 @contextmanager
 def progress() -> Iterator[Callable[[str], None]]:
-    """A spinner with the current step on a terminal's standard error; in a pipe, what is lasting, a line each.
+    """Show progress on standard error: on a terminal a spinner with the current step, in a pipe the `Lasting` lines.
 
-    Each step stays as a line but those that say the same up to their colon: they only move the count that follows it.
+    On a terminal each step leaves a line. Of steps with the same text before the colon, only the first leaves one.
     """
     console = Console(stderr=True, log_path=False)
     if not console.is_terminal:
@@ -49,12 +49,12 @@ def progress() -> Iterator[Callable[[str], None]]:
 
 
 def print_json(data: dict[str, Any]) -> None:
-    """One object on standard output; a number that is not finite becomes null, as JSON has none."""
+    """Print one object on standard output. A number that is not finite becomes null: JSON has no other way."""
     sys.stdout.write(json.dumps(_plain(data), indent=2) + "\n")
 
 
 def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """A table on standard output, never narrower than its contents in a pipe."""
+    """Print a table on standard output. In a pipe it is as wide as its contents."""
     console = Console()
     table = Table(
         *(Column(Text(c)) for c in columns),
@@ -72,7 +72,7 @@ def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]
 
 
 def print_outcome(outcome: Outcome, written: Written, as_json: bool) -> None:
-    """The margins, the geometry, the cycle and the files written."""
+    """Print the margins, the geometry, the cycle and the files written."""
     if as_json:
         print_json(_outcome_data(outcome, written))
         return
@@ -89,7 +89,7 @@ def print_outcome(outcome: Outcome, written: Written, as_json: bool) -> None:
     if geometry:
         print_table("Geometry", ("field", outcome.before, "result"), geometry)
     if outcome.active:
-        print_table("Held back by", ("active constraint",), [(item,) for item in outcome.active])
+        print_table("The optimum is limited by", ("active constraint",), [(item,) for item in outcome.active])
     if outcome.timing:
         print_timing(outcome.timing, Written(), False, (outcome.before, outcome.prototype_timing))
     print_files(written)
@@ -98,7 +98,7 @@ def print_outcome(outcome: Outcome, written: Written, as_json: bool) -> None:
 def print_timing(
     timing: Timing, written: Written, as_json: bool, before: tuple[str, Timing | None] = ("", None)
 ) -> None:
-    """The cycle's figures and peaks; beside them those of a geometry with a name, where they are known."""
+    """Print the cycle's figures and peaks, and beside them those of a second, named geometry if there is one."""
     robot, figures = timing.cycle.robot, timing.figures()
     if as_json:
         made_for = {"mechanism": type(robot).__name__, "geometry_hash": robot.geometry.digest}
@@ -107,7 +107,7 @@ def print_timing(
             {
                 **made_for,
                 **figures,
-                "lower_bound_of": "any motion on the cycle's own path, without a limit of jerk",
+                "lower_bound_of": "any motion on the cycle's own path, without a jerk limit",
                 "proved_on_the_path": timing.cycle.certificate.margins,
                 "proved_over_limit": timing.cycle.proved,
                 "between_setpoints": between,
@@ -127,14 +127,14 @@ def print_timing(
         print_table(title, ("figure", "value"), [(name, _figure(figures[name])) for name in names])
     proved = timing.cycle.certificate
     print_table(
-        f"Proved at every pose of the path, by {proved.intervals} intervals",
+        f"Proved at every pose of the path, with {proved.intervals} intervals",
         ("margin", "at least"),
         proved.rows(),
     )
     for k, piece in enumerate(timing.cycle.there, start=1):
         which = f", piece {k}" if len(timing.cycle.there) > 1 else ""
         print_table(
-            f"Way there{which}, between the gridpoints too",
+            f"Way there{which}, checked between the gridpoints too",
             ("quantity", "peak", "limit", "peak over limit", "proved at most", "joint", "at [s]"),
             piece.timed.verification.rows(),
         )
@@ -143,7 +143,7 @@ def print_timing(
 
 
 def _print_between(timing: Timing) -> None:
-    """What a drive's own interpolation makes of the set-points."""
+    """Print the errors that a drive's own interpolation adds between set-points."""
     found = timing.setpoints.header["between set-points"]
     names = list(dict.fromkeys(name for measured in found.values() for name in measured))
     users = {way: ", ".join(n for n, f in FORMATS.items() if f.interpolation == way) for way in found}
@@ -152,7 +152,7 @@ def _print_between(timing: Timing) -> None:
 
 
 def print_proofs(question: Question, proofs: Sequence[Proof], written: Written, as_json: bool) -> None:
-    """Each claim and its answer."""
+    """Print each claim and its answer."""
     if as_json:
         print_json(
             {
@@ -169,7 +169,7 @@ def print_proofs(question: Question, proofs: Sequence[Proof], written: Written, 
 
 
 def print_checks(found: dict[str, list[Row]], as_json: bool, verbose: bool) -> None:
-    """A line for each study, and the claims that fail; all of them for machines, and where asked."""
+    """Print a line for each study, and the claims that fail. With `as_json` or `verbose`, print all claims."""
     if as_json:
         data = {name: [{**vars(row), "holds": row.holds} for row in rows] for name, rows in found.items()}
         holds = all(row.holds for rows in found.values() for row in rows)
@@ -177,7 +177,7 @@ def print_checks(found: dict[str, list[Row]], as_json: bool, verbose: bool) -> N
         return
     for name, rows in found.items():
         failed = sum(not row.holds for row in rows)
-        verdict = f"all holds, {len(rows)} claims" if failed == 0 else f"{failed} of {len(rows)} claims FAIL"
+        verdict = f"all {len(rows)} claims hold" if failed == 0 else f"{failed} of {len(rows)} claims FAIL"
         if not (failed or verbose):
             print(f"{name}: {verdict}")
             continue
@@ -231,7 +231,7 @@ def _figure(value: object) -> str:
 
 
 def print_files(written: Written, as_json: bool = False) -> None:
-    """What was written, what was removed, and what stays from earlier commands though it answers another question."""
+    """Print which files were written, removed, or kept from an earlier command that answered another question."""
     if as_json:
         print_json(files_data(written))
         return
@@ -240,11 +240,11 @@ def print_files(written: Written, as_json: bool = False) -> None:
     for file in written.removed:
         print(f"removed {file}: it answered another question")
     for file in written.left:
-        print(f"left {file}: an earlier command wrote it, for another question")
+        print(f"kept {file}: an earlier command wrote it for another question")
 
 
 def files_data(written: Written) -> dict[str, list[Path]]:
-    """The same as plain data; what is empty is left out, but for the files written."""
+    """The same as plain data. Empty lists are left out, except that of the files written."""
     return {name: list(files) for name, files in vars(written).items() if files or name == "files"}
 
 

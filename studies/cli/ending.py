@@ -1,4 +1,4 @@
-"""How a command ends: what it says of an error, and its exit status. Heavy imports wait, as in `cli`."""
+"""How a command ends: the message of an error, and the exit status. Heavy imports wait, as in `app`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def ended_by(app: typer.Typer) -> None:
     if not sys.warnoptions:
         warnings.simplefilter(
             "ignore"
-        )  # of the libraries, for programmers; what goes wrong is checked, and told in words
+        )  # warnings of libraries are for programmers; our own checks find the faults and report them
     signal.signal(signal.SIGINT, _interrupted)
     signal.signal(signal.SIGTERM, _interrupted)
     try:
@@ -27,14 +27,14 @@ def ended_by(app: typer.Typer) -> None:
 
         if isinstance(error, LinkwrightError):
             _fail(str(error), error.exit_status, _data(error))
-        if not hasattr(error, "format_message"):  # typer's own, of a wrong command line, have that
+        if not hasattr(error, "format_message"):  # typer's errors of a wrong command line have it
             raise
         _fail(error.format_message(), 2, {"kind": type(error).__name__})
     sys.exit(status if isinstance(status, int) else 0)
 
 
 def _fail(message: str, status: int, data: dict[str, Any]) -> NoReturn:
-    """The message on standard error and, where the command is to print JSON, an object on standard output."""
+    """Print the message on standard error. With --json, also print an object on standard output."""
     if "--json" in sys.argv:
         print(json.dumps({"error": message, "exit_status": status, **data}, indent=2))
     print(f"linkwright: {message}", file=sys.stderr)
@@ -42,7 +42,7 @@ def _fail(message: str, status: int, data: dict[str, Any]) -> NoReturn:
 
 
 def _data(error: Exception) -> dict[str, Any]:
-    """What an error holds beside its words: its kind, problems by file and key, requirements that fail."""
+    """The data of an error: its kind, its faults with file and key, the requirements that fail."""
     kind = {"kind": type(error).__name__}
     lists = {"problems": getattr(error, "faults", ()), "failed": getattr(error, "failed", ())}
     return kind | {name: [_plain(vars(one)) for one in found] for name, found in lists.items() if found}
@@ -51,7 +51,7 @@ def _data(error: Exception) -> dict[str, Any]:
 def _plain(value: Any) -> Any:
     match value:
         case float():
-            return value if abs(value) < float("inf") else None  # JSON has no other; NaN is below nothing
+            return value if abs(value) < float("inf") else None  # JSON has neither infinity nor NaN
         case str() | int() | bool() | None:
             return value
         case dict():
@@ -63,7 +63,7 @@ def _plain(value: Any) -> Any:
 
 
 def _interrupted(kind: int, _: object) -> None:
-    """Stop at once: an exception would be swallowed inside the solver, which then answers as if nothing had been."""
+    """Stop at once. The solver would catch an exception and return an answer as if it had finished."""
     show_cursor = "\x1b[?25h" if sys.stderr.isatty() else ""
-    os.write(2, f"{show_cursor}\nlinkwright: interrupted, nothing was left half-written\n".encode())
+    os.write(2, f"{show_cursor}\nlinkwright: interrupted; no file is half-written\n".encode())
     os._exit(128 + kind)

@@ -1,4 +1,4 @@
-"""What a command starts from: its study, the robot, folders that can be written. Heavy imports wait, as in `cli`."""
+"""What a command starts from: its study, its robot, its output folder. Heavy imports wait, as in `app`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Asked(NamedTuple):
-    """What a command is asked: a study, the file that it comes from, and the names of the drive files that it wants."""
+    """A study, its file, and the names of the drive files that the command will write."""
 
     file: TomlFile
     study: Study
@@ -22,13 +22,13 @@ class Asked(NamedTuple):
 
 
 def load(given: str, allow_code: bool = False, formats: list[str] | None = None, seconds: float | None = None) -> Asked:
-    """The study, checked against its mechanism.
+    """Read a study and check it against its mechanism.
 
     Args:
-        given: its name, or a path.
-        allow_code: whether the module that it may name for its mechanism may run.
-        formats: of the drive files, in place of the study's.
-        seconds: of each stage, in place of the study's budget.
+        given: the study's name, or a path.
+        allow_code: whether the Python module that the study names for its mechanism may run.
+        formats: formats of the drive files, in place of the study's.
+        seconds: time for each stage [s], in place of the study's budget.
     """
     from studies.building import drive_file_names, load_study, require_cycle_inside
     from studies.study_file import read_toml, study_path
@@ -62,7 +62,7 @@ def output_folder(path: Path | None, names: Iterable[str], force: bool) -> Outpu
 
 
 def output_folder(path: Path | None, names: Iterable[str], force: bool) -> OutputFolder | None:
-    """The folder, where files of these names can be written; None for none."""
+    """The folder, after a check that files of these names can be written there; None without a path."""
     from studies.results import OutputFolder
 
     if path is None:

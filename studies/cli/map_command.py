@@ -31,8 +31,8 @@ AtOption = Annotated[
     typer.Option(
         "--at",
         metavar="NAME=VALUE[,...]",
-        help="Fix another coordinate, such as theta_deg=0. Of several values the worst counts "
-        "(default: the worst over its interval).",
+        help="Fix another coordinate, such as theta_deg=0. Several values take the worst of them "
+        "(default: the worst over the coordinate's interval).",
     ),
 ]
 OverOption = Annotated[
@@ -40,7 +40,7 @@ OverOption = Annotated[
     typer.Option(
         "--over",
         metavar="NAME=LOW:HIGH",
-        help="Replace bounds of the study's region, such as z_mm=-800:800, or radius=0.7 of a cylinder.",
+        help="Replace bounds of the study's region, such as z_mm=-800:800, or radius=0.7 for a cylinder.",
     ),
 ]
 AtLeastOption = Annotated[
@@ -48,11 +48,15 @@ AtLeastOption = Annotated[
     typer.Option(
         "--at-least",
         metavar="C",
-        help="Bound of the area and the boundary. If not given: the study's requirement; 1 for fvi; else all in reach.",
+        help="Show where the margin is at least C (default: the study's requirement; 1 for fvi; "
+        "else the whole part in reach).",
     ),
 ]
 CertifiedOption = Annotated[
-    bool, typer.Option("--certified", help="Also prove: the largest cylinder's radius, or the plane's cells.")
+    bool,
+    typer.Option(
+        "--certified", help="Also prove the bound: in the largest possible cylinder, or in cells of the plane."
+    ),
 ]
 ToleranceOption = Annotated[float, typer.Option("--tolerance", help="Stop refining below this relative change.")]
 
@@ -73,9 +77,9 @@ def map_(
     force: ForceOption = False,
     allow_code: AllowCodeOption = False,
 ) -> None:
-    """Map an index over a plane of the workspace: area, mean, deviation, boundary, picture and numbers.
+    """Map a margin over a plane of the workspace: area, mean, deviation, boundary, picture and numbers.
 
-    Exits 1 where the figures still move by more than the tolerance.
+    Exits 1 if the last refinement still changed the figures by more than the tolerance.
 
     linkwright map heli4 --certified
 

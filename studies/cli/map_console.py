@@ -11,7 +11,7 @@ from studies.stages import MapOutcome, shown_pose
 
 
 def print_map(outcome: MapOutcome, written: Written, as_json: bool) -> None:
-    """The figures and by how much the last refinement moved them, what is proved, and the files written."""
+    """Print the figures, how much the last refinement changed them, what is proved, and the files written."""
     figures, unit = outcome.figures(), outcome.area_unit
     if as_json:
         rings = [ring.tolist() for ring in outcome.found.boundary]
@@ -35,7 +35,7 @@ def print_map(outcome: MapOutcome, written: Written, as_json: bool) -> None:
         rows.insert(0, ("not settled", outcome.still_moves, "", ""))
     rest = request.section.rest(request.robot.pose_names)
     title = f"{bound_label(outcome)}; {request.section}" + (f"; worst over {', '.join(rest)}" if rest else "")
-    print_table(title, ("figure", "value", "moved last by", "at pose"), rows)
+    print_table(title, ("figure", "value", "last change", "at pose"), rows)
     if (proof := outcome.certified) is not None:
         proved = []
         if outcome.certified_area is not None:
@@ -46,7 +46,7 @@ def print_map(outcome: MapOutcome, written: Written, as_json: bool) -> None:
         proved += [
             ("certificates", str(len(proof.certificates))),
             ("boxes", str(proof.boxes)),
-            ("boxes left undecided", str(len(proof.left))),
+            ("undecided boxes", str(len(proof.left))),
             *([] if proof.complete else [("not complete", "the time was used up")]),
             ("time [s]", f"{proof.seconds:.1f}"),
         ]
@@ -55,5 +55,5 @@ def print_map(outcome: MapOutcome, written: Written, as_json: bool) -> None:
 
 
 def _number(value: float, digits: int) -> str:
-    """Over no area there is none."""
+    """A number as text; "none" for NaN, the mean over an empty area."""
     return "none" if math.isnan(value) else f"{value:.{digits}g}"

@@ -21,16 +21,20 @@ FormatOption = Annotated[
     list[str] | None,
     typer.Option(
         "--format",
-        help="With --out: a format (see `linkwright list`); once for each (default: the study's own, or csv).",
+        help="A format of drive files (see `linkwright list`). Repeat for more. Needs --out (default: the study's, "
+        "else csv).",
     ),
 ]
 ForceOption = Annotated[
-    bool, typer.Option("--force", help="Replace files that this program did not write, or that were changed since.")
+    bool,
+    typer.Option(
+        "--force", help="Also replace files that this program did not write, or that changed since it wrote them."
+    ),
 ]
 AllowCodeOption = Annotated[
-    bool, typer.Option("--allow-code", help="Run the Python module that the study names for its mechanism.")
+    bool, typer.Option("--allow-code", help="Allow the Python module to run that the study names for its mechanism.")
 ]
 SecondsOption = Annotated[
     float | None,
-    typer.Option("--seconds", help="What each stage may take, in place of the study's table \\[budget]."),
+    typer.Option("--seconds", help="The seconds for each long stage, in place of the study's table \\[budget]."),
 ]

@@ -17,19 +17,20 @@ def run(
     json: JsonOption = False,
     commit: Annotated[
         bool,
-        typer.Option("--commit", help="Also put optimum.toml beside the study, for `check` to verify from now on."),
+        typer.Option(
+            "--commit", help="Also write the optimum and its proofs beside the study, where `check` finds them."
+        ),
     ] = False,
     fresh: Annotated[
-        bool, typer.Option("--fresh", help="Optimise anew, though the folder has the optimum of an earlier run.")
+        bool, typer.Option("--fresh", help="Optimise again, even if the folder has the optimum of an earlier run.")
     ] = False,
     seconds: SecondsOption = None,
     force: ForceOption = False,
     allow_code: AllowCodeOption = False,
 ) -> None:
-    """The whole way: optimise, search densely, time the cycle, verify, prove, write set-points and report.
+    """Do all steps: optimise, search for worse poses, time the cycle, verify, prove, write set-points and report.
 
-    The optimum is written as soon as it is found. The next run into the same folder takes it up, if the question is the
-    same.
+    The optimum is written as soon as it is found. The next run of the same study into the same folder starts from it.
 
     linkwright run heli4 --out results
 
@@ -51,7 +52,7 @@ def run(
 def optimise(
     study: StudyArgument, json: JsonOption = False, seconds: SecondsOption = None, allow_code: AllowCodeOption = False
 ) -> None:
-    """Optimise the geometry and print what was found; writes nothing.
+    """Optimise the geometry and print the result. Nothing is written.
 
     linkwright optimise heli4 --json
     """
@@ -64,7 +65,7 @@ def optimise(
     file, asked, _ = load(study, allow_code, seconds=seconds)
     asked = asked.model_copy(update={"trajectory": None})
     if asked.optimise is None:
-        raise InvalidValue(f"study {asked.name}", "no [optimise] table", "one with the variables to optimise")
+        raise InvalidValue(f"study {asked.name}", "no [optimise] table", "an [optimise] table with variables")
     with told_at_key(file), console.progress() as tell:
         outcome = designed(asked, None, tell)
     console.print_outcome(outcome, Written(), json)

@@ -1,4 +1,4 @@
-"""Verification of a committed `optimum.toml` from scratch: every entry computed again and held against the claim."""
+"""Verify a committed `optimum.toml`: compute every entry again and compare it with the file."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _SOLVED = "Solve_Succeeded"
 
 
 def check_study(file: TomlFile, allow_code: bool = False) -> list[Row]:
-    """Everything that the optimum beside a study file claims; `allow_code` as for `load_study`.
+    """Check every claim of the optimum beside a study file; `allow_code` as for `load_study`.
 
     Raises:
-        StudyError: one of the two files cannot be used at all.
+        StudyError: the study or the optimum cannot be used at all.
     """
     study, folder = load_study(file, allow_code), file.path.parent
     claimed = read_optimum(folder / FILE)
@@ -40,7 +40,7 @@ def check_study(file: TomlFile, allow_code: bool = False) -> list[Row]:
 
 
 def proofs(claimed: Optimum, outcome: Outcome, folder: Path) -> list[Row]:
-    """Every claim of being proved, its certificate in the folder replayed.
+    """Check every entry that says "proved": replay its certificate in the folder.
 
     Raises:
         UnreadableCertificate: a file is missing or cannot be read.
@@ -50,7 +50,7 @@ def proofs(claimed: Optimum, outcome: Outcome, folder: Path) -> list[Row]:
 
 
 def compare(claimed: Optimum, outcome: Outcome) -> list[Row]:
-    """Every claim of a file, but those of being proved, against what its geometry was found to do."""
+    """Check every claim of a file except its proofs against the figures computed now."""
     study, problem, robot = outcome.study, outcome.problem, outcome.robot
     return [
         *_question(claimed, study, "design"),
@@ -63,7 +63,7 @@ def compare(claimed: Optimum, outcome: Outcome) -> list[Row]:
 
 
 def _question(claimed: Optimum, study: Study, which: str) -> list[Row]:
-    """That the file answers this question of the study, or each key that changed since; then the digest."""
+    """Rows for each key of the question that changed since the file was made, then for the question's digest."""
     now = {"design": design_question, "cycle": cycle_question}[which](study)
     changed = changes(claimed.asked(which), now)
     rows = [Row(f"{which} question: {key}", told(was), told(is_now), -1.0) for key, (was, is_now) in changed.items()]
@@ -72,7 +72,7 @@ def _question(claimed: Optimum, study: Study, which: str) -> list[Row]:
 
 
 def _within_bounds(problem: Problem, robot: Mechanism) -> list[Row]:
-    """Variables inside their bounds, sums kept, everything else as in the study."""
+    """Check that variables are inside their bounds, sums are kept, and other fields are the study's."""
     rows = []
     vector, own = robot.geometry.vector(), problem.robot.geometry.vector()
     places = problem.places()
@@ -89,7 +89,7 @@ def _within_bounds(problem: Problem, robot: Mechanism) -> list[Row]:
 
 
 def _requirements(study: Study, outcome: Outcome) -> list[Row]:
-    """Requirements met over the region and on the cycle, limits kept, and no worse than the study's own geometry."""
+    """Check the requirements over the region and on the cycle, the limits, and the gain over the study's geometry."""
     rows = []
     for r in outcome.problem.requirements:
         worst = outcome.worst[r.margin]
@@ -101,7 +101,7 @@ def _requirements(study: Study, outcome: Outcome) -> list[Row]:
         worst = outcome.worst[name]
         rows.append(
             at_least(
-                f"{name} is no worse than of the study's own geometry",
+                f"{name} is no worse than the study's own geometry",
                 outcome.prototype[name].value,
                 worst.value,
                 worst.pose,
@@ -113,7 +113,7 @@ def _requirements(study: Study, outcome: Outcome) -> list[Row]:
 
 
 def _at_claimed_poses(claimed: Optimum, problem: Problem, robot: Mechanism, region: Region) -> list[Row]:
-    """Each claimed pose lies in the region and has the claimed figure; which of several equal ones is free."""
+    """Check that each claimed pose is in the region and has the claimed figure. Any of several equal poses will do."""
     rows = []
     for name, given in claimed.data["worst_pose"].items():
         pose = np.array(given, dtype=float) if _numbers(given, len(robot.pose_names)) else None
@@ -126,7 +126,7 @@ def _at_claimed_poses(claimed: Optimum, problem: Problem, robot: Mechanism, regi
 
 
 def _entries(claimed: Optimum, found: Optimum, study: Study) -> list[Row]:
-    """Every other entry of the file against the same entry computed now; none missing, none invented."""
+    """Compare every other entry of the file with the same entry computed now. Report missing and unknown ones."""
     ours, theirs = dict(_leaves(found.data)), dict(_leaves(claimed.data))
     ours["made_by.solver_status"] = _SOLVED if study.optimise else GIVEN  # `check` does not optimise again
     cycle_stands = claimed.asked("cycle") == cycle_question(study)
@@ -137,7 +137,7 @@ def _entries(claimed: Optimum, found: Optimum, study: Study) -> list[Row]:
             continue
         if key not in ours or key not in theirs:
             have, lack = ("the file", "the run") if key in theirs else ("the run", "the file")
-            rows.append(Row(key, f"in {have} only", f"not in {lack}", -1.0))
+            rows.append(Row(key, f"only in {have}", f"not in {lack}", -1.0))
         elif isinstance(ours[key], float):
             rows.append(agrees(key, theirs[key], ours[key]))
         elif key == "made_by.geometry_hash":

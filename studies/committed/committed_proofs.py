@@ -1,4 +1,4 @@
-"""The certificates beside an `optimum.toml`: one file a margin, and its entry in the `[certificate]` table."""
+"""The certificates beside an `optimum.toml`: one file for each margin, and its entry in the table `[certificate]`."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from design import Certificate, certificate_bytes, load_certificate
 from kinematics import LinkwrightError, rounded_down
 from studies.stages import Claim, Proof, Question, Row, same, same_digest
 
-WORTH = 0.5  # of the lowest value found: a best bound below this says next to nothing
+WORTH = 0.5  # share of the lowest value found; a best bound below this share says too little
 FOLDER = "certificates"
 
 
 def file_of(margin: str) -> str:
-    """Where a margin's certificate is, from the optimum's folder."""
+    """Path of a margin's certificate, relative to the optimum's folder."""
     return f"{FOLDER}/{margin}.npz"
 
 
 def proof_files(proofs: Sequence[Proof]) -> dict[str, str | bytes]:
-    """What was proved, as files."""
+    """The proved certificates as files, by their paths."""
     return {file_of(p.certificate.margin): certificate_bytes(p.certificate) for p in proofs if _proved(p.certificate)}
 
 
 def proof_entries(proofs: Sequence[Proof], most_boxes: int) -> dict[str, dict[str, Any]]:
-    """What an optimum says of each claim; one that stayed undecided has no file."""
+    """The optimum's entry for each claim, by margin. An undecided claim has no file."""
     return {p.certificate.margin: _entry(p.certificate, most_boxes) for p in proofs}
 
 
@@ -43,10 +43,10 @@ def _proved(certificate: Certificate) -> bool:
 
 
 def known_certificates(entries: Mapping[str, Mapping[str, Any]], folder: Path) -> dict[str, Certificate]:
-    """By margin; still to be replayed.
+    """The certificates that the entries name, by margin. They are not replayed yet.
 
     Raises:
-        UnreadableCertificate: an optimum speaks of a file that cannot be read.
+        UnreadableCertificate: a file that an entry names cannot be read.
     """
     return {m: load_certificate(folder / file_of(m)) for m, entry in entries.items() if entry.get("status") == "proved"}
 
@@ -54,11 +54,11 @@ def known_certificates(entries: Mapping[str, Mapping[str, Any]], folder: Path) -
 def proof_rows(
     question: Question, entries: Mapping[str, Mapping[str, Any]], worst: Mapping[str, float], folder: Path
 ) -> list[Row]:
-    """Every claim of the study against what the optimum in a folder says of it, and each file replayed.
+    """Compare every claim of the study with its entry in the optimum, and replay each certificate.
 
     Args:
-        entries: the optimum's, by margin.
-        worst: what a dense search found, by margin, as far as it is known; a proof above it would be false.
+        entries: the optimum's entries, by margin.
+        worst: the worst poses that a dense search found, by margin, where known. A proof above them would be false.
 
     Raises:
         UnreadableCertificate: a file is missing or cannot be read.
@@ -78,7 +78,7 @@ def proof_rows(
 
 
 def _undecided(question: Question, claim: Claim, entry: Mapping[str, Any]) -> list[Row]:
-    """Nothing is claimed, so nothing can be false but what it says it tried."""
+    """Rows of an undecided claim: it claims nothing, so only the record of the attempt is compared."""
     at_least = claim.at_least or 0.0
     expected = {"at_least": at_least, "status": "undecided", "most_boxes": question.study.certify.most_boxes}
     rows = _entry_rows(claim.margin, entry, expected)
@@ -101,7 +101,7 @@ def _replayed(
         return [*rows, _off(what, "proved", certificate.status)]
     lowest = worst[claim.margin] if claim.margin in worst else question.worst(claim.margin).value
     rows.append(Row(what, "proved", f"{boxes} boxes replayed", lowest - certificate.at_least))
-    if claim.at_least is None:  # nothing is required: a best bound, which must be worth its name
+    if claim.at_least is None:  # no bound is required, so the best bound must be near the lowest value found
         says = f"a bound above {WORTH:g} of the lowest found, {lowest:.6g}"
         found, above = rounded_down(certificate.at_least, 6), certificate.at_least - WORTH * lowest
         rows.append(Row(f"{claim.margin}, best bound", says, found, above))

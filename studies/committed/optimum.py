@@ -27,18 +27,18 @@ class Optimum:
     """The file's content.
 
     Attributes:
-        data: `mechanism`, `active` (what holds the optimum back) and the tables `made_by`, `asked` (the questions
-            `design` and `cycle`, by key), `geometry` (by the fields' names), `figures` (worst value of each margin; the
-            prototype's objective as `prototype`), `worst_pose` (where each one is) and, where the study asks for them,
-            `certificate` (by margin) and `cycle`.
-        file: where it was read from.
+        data: `mechanism`, `active` (the constraints that limit the optimum) and the tables `made_by`, `asked` (the
+            questions `design` and `cycle`, by key), `geometry` (by field), `figures` (worst value of each margin; the
+            prototype's objective as `prototype`), `worst_pose` (the pose of each worst value) and, if the study asks
+            for them, `certificate` (by margin) and `cycle`.
+        file: the path that it was read from.
     """
 
     data: dict[str, Any]
     file: TomlFile | None = None
 
     def text(self) -> str:
-        """The file."""
+        """The file's text."""
         header = "# Written by linkwright; `linkwright check` verifies it again, figure by figure.\n"
         return header + tomli_w.dumps(self.data, multiline_strings=False)
 
@@ -49,12 +49,12 @@ class Optimum:
 
     @property
     def certificates(self) -> dict[str, dict[str, Any]]:
-        """What it says of each claim that was to be proved, by margin."""
+        """The entry of each claim to prove, by margin."""
         entries: dict[str, dict[str, Any]] = self.data.get("certificate", {})
         return entries
 
     def asked(self, which: str) -> dict[str, Any]:
-        """The question "design" or "cycle" that it answers, by key."""
+        """The question that the file answers, "design" or "cycle": its values by key."""
         question = self.data["asked"].get(which, {})
         if not isinstance(question, dict):
             raise self.error_at(("asked", which), spelled(question), "a table")
@@ -72,7 +72,9 @@ class Optimum:
             StudyError: another mechanism, a missing or unknown field, or an impossible value, with its line.
         """
         if self.data["mechanism"] != study.mechanism:
-            raise self.error_at(("mechanism",), spelled(self.data["mechanism"]), f"the study's, {study.mechanism}")
+            raise self.error_at(
+                ("mechanism",), spelled(self.data["mechanism"]), f"the study's mechanism, {study.mechanism}"
+            )
         kind = study.mechanism_class
         given, known = self.data["geometry"], kind.Geometry.sizes()
         for field in given:
@@ -89,7 +91,7 @@ class Optimum:
 
 
 def optimum_of(outcome: Outcome) -> Optimum:
-    """What a run claims."""
+    """The optimum that a run claims."""
     study, objective = outcome.study, outcome.problem.objective
     design, cycle = design_question(study), cycle_question(study)
     figures = {margin: worst.value for margin, worst in outcome.worst.items()}
@@ -126,7 +128,7 @@ def read_optimum(path: Path) -> Optimum:
         StudyError: missing, not TOML, or a part missing or of the wrong kind, with its line.
     """
     if not path.is_file():
-        how = f"`linkwright run {path.parent / STUDY} --commit` writes it, and --prototype does without"
+        how = f"`linkwright run {path.parent / STUDY} --commit` writes it; --prototype works without it"
         raise StudyError([Fault(path, "", None, "no such file", f"the study's committed optimum: {how}")])
     optimum = Optimum((file := read_toml(path)).data, file)
     for key, kind, words in (("mechanism", str, "a name"), ("active", list, "a list"), *_tables()):
@@ -145,7 +147,7 @@ def read_optimum(path: Path) -> Optimum:
 
 
 def committed(study: Study, folder: Path) -> Mechanism | None:
-    """The robot of the optimum beside a study; None where the study gives its geometry itself.
+    """The robot of the optimum beside a study; None where the study optimises nothing.
 
     Raises:
         StudyError: the file is missing, cannot be used, or was made for another design question.
@@ -164,7 +166,7 @@ def committed(study: Study, folder: Path) -> Mechanism | None:
 
 
 def committed_certificates(study: Study, folder: Path, robot: Mechanism) -> dict[str, Certificate]:
-    """The certificates beside a study by margin, still to be replayed; none where its optimum is another's.
+    """The certificates beside a study, by margin, not replayed yet; none if the optimum is not that of `robot`.
 
     Raises:
         StudyError, UnreadableCertificate: a file cannot be used.
@@ -183,7 +185,7 @@ def told_change(key: str, was: object, now: object) -> str:
 
 
 def told(value: object) -> str:
-    """The value of a key, or that there is none."""
+    """The value of a key as text; "not given" for None."""
     return "not given" if value is None else spelled(value)
 
 

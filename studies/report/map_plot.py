@@ -1,4 +1,4 @@
-"""The picture of a map, as PNG bytes: contours, the bound, and inside it what is proved."""
+"""The picture of a map, as PNG bytes: contours, the bound, and the proved part."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _LEVELS = 14
 
 
 def map_picture(outcome: MapOutcome) -> bytes:
-    """One panel: filled contours, the bound in red, the certified region hatched, open boxes in black."""
+    """One panel: filled contours, the bound in red, the certified region hatched, undecided boxes in black."""
     request, chart = outcome.request, outcome.found.map
     with mpl.rc_context(STYLE):
         angles = angles_of(request.robot)
@@ -48,14 +48,14 @@ def _label(index: Index) -> str:
 
 
 def _panel_width(chart: Map, angles: Sequence[str]) -> float:
-    """Inches for a panel 3.6 high: to scale where both axes are lengths."""
+    """Width in inches of a panel 3.6 inches high. Both axes have one scale where both are lengths."""
     if set(chart.section.axes) & set(angles):
         return 3.6
     return float(np.clip(3.6 * np.ptp(chart.first) / np.ptp(chart.second), 1.8, 6.0))
 
 
 def bound_label(outcome: MapOutcome) -> str:
-    """What the red line is."""
+    """The label of the red line."""
     request = outcome.request
     if request.bound is None:
         return "region in reach"
@@ -63,7 +63,7 @@ def bound_label(outcome: MapOutcome) -> str:
 
 
 def draw_contours(figure: Figure, axes: Axes, chart: Map, name: str, scale: Array, bound: float | None) -> None:
-    """Filled and labelled contours of a map, cut off at the region's boundary; fine where the bound is kept."""
+    """Draw filled, labelled contours of a map inside the region. Their steps are fine where the bound is kept."""
     first, second, values = scale[0] * chart.first, scale[1] * chart.second, np.ma.masked_invalid(chart.values)
     levels = _levels(chart, bound)
     filled = axes.contourf(first, second, values, levels=levels, cmap="viridis", extend="both")
@@ -80,7 +80,7 @@ def draw_contours(figure: Figure, axes: Axes, chart: Map, name: str, scale: Arra
 
 
 def _levels(chart: Map, bound: float | None) -> Array:
-    """Round contour levels over the part that keeps the bound, and as far again on the bound's other side."""
+    """Round contour levels over the part that keeps the bound, and over as wide a span on the bound's other side."""
     values = chart.values[(chart.inset >= 0.0) & np.isfinite(chart.values)]
     if not values.size:
         return np.array([0.0, 1.0])
@@ -91,14 +91,14 @@ def _levels(chart: Map, bound: float | None) -> Array:
 
 
 def draw_boundary(axes: Axes, rings: Sequence[Array], scale: Array, label: str, colour: str = BOUND) -> Line2D:
-    """Closed lines; the handle for a legend."""
+    """Draw closed lines; returns the handle for a legend."""
     for ring in rings:
         axes.plot(*(scale * ring).T, color=colour, linewidth=1.6, clip_on=False)
     return Line2D([], [], color=colour, linewidth=1.6, label=label)
 
 
 def label_axes(axes: Axes, names: Sequence[str], angles: Sequence[str]) -> None:
-    """Names and units; lengths on both axes in the same scale."""
+    """Label both axes with name and unit. Two lengths get the same scale."""
     first, second = (f"{name} [{'deg' if name in angles else 'm'}]" for name in names)
     axes.set(xlabel=first, ylabel=second)
     axes.locator_params(axis="x", nbins=5)
@@ -107,7 +107,7 @@ def label_axes(axes: Axes, names: Sequence[str], angles: Sequence[str]) -> None:
 
 
 def draw_cells(axes: Axes, cells: Array, scale: Array, label: str) -> Patch:
-    """Proved cells (k, 2, 2), hatched; the handle for a legend."""
+    """Draw proved cells (k, 2, 2), hatched; returns the handle for a legend."""
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
     polygons = [scale * np.take_along_axis(cell, corners, axis=0) for cell in cells]
     axes.add_collection(PolyCollection(polygons, **PROVED))
@@ -138,7 +138,7 @@ def _draw_certified(axes: Axes, outcome: MapOutcome, scale: Array) -> list[Patch
 
 
 def _title(outcome: MapOutcome) -> str:
-    """What is mapped, where, and its figures."""
+    """The title: what is mapped, where, and the figures."""
     request, figures = outcome.request, outcome.found.figures
     section, angles = request.section, angles_of(request.robot)
     shown = []

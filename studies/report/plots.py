@@ -21,7 +21,7 @@ _LINES = {
     "platform": (_COLOURS[1], 3.0),
     "tool": (_COLOURS[2], 2.0),
 }
-_DASHES = ("-", "--")  # symmetric joints move alike: every second one leaves gaps for the other
+_DASHES = ("-", "--")  # symmetric joints have equal curves: dashes let the curve below be seen
 STYLE: Any = {
     "font.size": 9,
     "axes.titlesize": 10,
@@ -44,7 +44,7 @@ def _free(region: Region, names: Sequence[str]) -> list[str]:
 
 
 def section_of(problem: Problem, robot: Mechanism, region: Region, margin: str, size: int = 61) -> Map:
-    """The region's first two free coordinates as a plane, the worst over the others."""
+    """Map a margin over the region's first two free coordinates, the worst over the others."""
     first, second = _free(region, robot.pose_names)[:2]
     index = index_of(robot, margin, problem.fvi_bounds, problem.characteristic_length)
     return map_of(index, Section(region, (first, second)), robot.pose_names, (size, size))
@@ -53,7 +53,7 @@ def section_of(problem: Problem, robot: Mechanism, region: Region, margin: str, 
 def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
     """Each robot in 3-D in its workspace, all in the same scale, with the workspace's edge.
 
-    A robot that reaches no pose of the workspace is drawn as far as it can be.
+    Of a robot that reaches no pose of the workspace, only the parts with a known place are drawn.
     """
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.6 * len(robots), 4.2))
@@ -76,9 +76,9 @@ def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
 
 
 def pose_in(robot: Mechanism, region: Region) -> Array:
-    """(n,) a pose of the region: home where it is one, else the most central one of few that the robot reaches.
+    """(n,) a pose of the region: home if it is in the region, else the most central of a few that the robot reaches.
 
-    Where it reaches none of them, the most central one of all.
+    If the robot reaches none of these, the most central of them.
     """
     names, home = robot.pose_names, np.asarray(robot.home, dtype=float)
     poses = region.spread(names)
@@ -92,7 +92,7 @@ def pose_in(robot: Mechanism, region: Region) -> Array:
 
 
 def _finite(lines: dict[str, Array]) -> dict[str, Array]:
-    """Without the points that a pose out of reach leaves without a place."""
+    """The lines without their NaN points, which a pose out of reach leaves without a place."""
     return {name: line[np.isfinite(line).all(axis=-1)] for name, line in lines.items()}
 
 
@@ -105,7 +105,7 @@ def _common_box(lines: list[Array]) -> tuple[Array, Array]:
 
 
 def map_picture(sections: dict[str, Map], title: str, bound: float | None) -> bytes:
-    """Worst value over the plane, one panel a robot, same colours; the bound as a red line where it is crossed."""
+    """Worst values over the plane: a panel for each robot, same colours, a red line at the bound if it is crossed."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(4.9 * len(sections), 4.2), layout="constrained")
         shown = {label: np.where(chart.inset >= 0.0, chart.values, np.nan) for label, chart in sections.items()}
@@ -117,7 +117,7 @@ def map_picture(sections: dict[str, Map], title: str, bound: float | None) -> by
             low = float(np.nanmin(shown[label]))
             if bound is not None and low < bound < np.nanmax(shown[label]):
                 axes.contour(chart.first, chart.second, shown[label], levels=[bound], colors="red")
-            axes.set(title=f"{label}: least {low:.3f} on this grid", xlabel=_axis(chart.section.axes[0]))
+            axes.set(title=f"{label}: lowest {low:.3f} on this grid", xlabel=_axis(chart.section.axes[0]))
             axes.set_aspect("equal")
             axes.grid(False)
         panels[0].set_ylabel(_axis(chart.section.axes[1]))
@@ -147,7 +147,7 @@ def path_picture(poses: Array, time: Array, names: Sequence[str]) -> bytes:
 
 
 def motion_picture(time: Array, rows: Sequence[tuple[str, Array, Array | None]], joints: Sequence[str]) -> bytes:
-    """Joint quantities over time, one panel each, their limits dashed.
+    """Joint quantities over time, one panel each, with dashed limits.
 
     Args:
         time: (k,) [s].
@@ -176,7 +176,7 @@ def _axis(name: str) -> str:
 
 
 def png(figure: Figure) -> bytes:
-    """The figure, drawn; the same bytes for the same figure."""
+    """The figure as PNG; the same figure gives the same bytes."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=130, metadata={"Software": None})
     return buffer.getvalue()

@@ -1,4 +1,4 @@
-"""The report: one HTML file that opens offline, every figure in it printed from the run's own data."""
+"""The report: one HTML file that opens offline. Every figure in it comes from the run's own data."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MAPPED = ("fvi", "internal_determinant")
 
 
 def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
-    """The whole report as text; `command` made it."""
+    """The whole report as text; it names the `command` that made it."""
     environment = Environment(
         loader=PackageLoader("studies.report"),
         autoescape=True,
@@ -62,7 +62,7 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
 
 
 def _geometry_rows(outcome: Outcome) -> list[tuple[str, str, str, str]]:
-    """Field, the study's own, result, what it means."""
+    """Rows of four texts: field, the study's own value, result, meaning."""
     before, after = outcome.problem.robot.geometry, outcome.robot.geometry
     return [
         (name, _numbers(getattr(before, name)), _numbers(getattr(after, name)), doc)
@@ -71,7 +71,7 @@ def _geometry_rows(outcome: Outcome) -> list[tuple[str, str, str, str]]:
 
 
 def _timing_rows(outcome: Outcome) -> list[tuple[str, list[tuple[str, str]]]]:
-    """Label, figures of each cycle that was timed."""
+    """For each cycle that was timed, its label and its figures."""
     timings = {"result": outcome.timing, outcome.before: outcome.prototype_timing}
     return [(label, _timing_figures(timing)) for label, timing in timings.items() if timing]
 
@@ -82,11 +82,11 @@ def _timing_figures(timing: Timing) -> list[tuple[str, str]]:
     return [
         ("law", figures["law"]),
         (timing.half_cycle_name.replace("_", " ") + " [s]", f"{timing.half_cycle:.6f}"),
-        ("no motion on this path, even without a limit of jerk, takes less than [s]", f"{figures['lower_bound']:.6f}"),
-        ("this over that bound", f"{timing.half_cycle / figures['lower_bound']:.4f}"),
+        ("least time of any motion on this path, even without a jerk limit [s]", f"{figures['lower_bound']:.6f}"),
+        ("time over this least time", f"{timing.half_cycle / figures['lower_bound']:.4f}"),
         ("cycle on the bus [s]", f"{on_bus:.6f}"),
         ("cycles per second", f"{1 / on_bus:.3f}"),
-        ("repair: time stretched by", f"{figures['repair_factor']:.6f}"),
+        ("factor that stretched the time to keep the limits", f"{figures['repair_factor']:.6f}"),
         ("worst RMS over peak torque", f"{figures['worst_rms_over_peak_torque']:.3f}"),
     ]
 
@@ -101,18 +101,18 @@ def _peak_rows(timing: Timing) -> list[Sequence[str]]:
 
 
 def pictures_of(outcome: Outcome) -> Pictures:
-    """The mechanism, the maps of its margins, the path and the joints' motion."""
+    """Pictures of the mechanism, the maps of its margins, the path and the joints' motion."""
     robots = {"result": outcome.robot}
     if outcome.prototype is not None:
         robots = {outcome.before: outcome.problem.robot, **robots}
-    pictures = [("Mechanism in its workspace, whose edge is green", plots.mechanism_picture(robots, outcome.region))]
+    pictures = [("Mechanism in its workspace (green edges)", plots.mechanism_picture(robots, outcome.region))]
     bounds = {r.margin: r.at_least for r in outcome.problem.requirements} | {outcome.problem.objective: 1.0}
     mapped = _MAPPED if plots.can_be_mapped(outcome.region, outcome.robot.pose_names) else ()
     for margin in (m for m in mapped if m in outcome.robot.margins):
         sections = {
             label: plots.section_of(outcome.problem, robot, outcome.region, margin) for label, robot in robots.items()
         }
-        title = f"{outcome.robot.margins[margin].words}; the worst over the other coordinates"
+        title = f"{outcome.robot.margins[margin].words}; worst over the other coordinates"
         pictures.append((title[0].upper() + title[1:], plots.map_picture(sections, margin, bounds.get(margin))))
     return pictures + (_motion_pictures(outcome.timing) if outcome.timing else [])
 
@@ -138,17 +138,17 @@ def _motion_pictures(timing: Timing) -> Pictures:
     ]
     return [
         (f"Path of the {timing.half_cycle_name.replace('_', ' ')}", plots.path_picture(pose, times, robot.pose_names)),
-        ("Joints on the way there, limits dashed", plots.motion_picture(times, rows, robot.actuator_names)),
+        ("Joints on the way there; limits are dashed", plots.motion_picture(times, rows, robot.actuator_names)),
     ]
 
 
 def _stated(header: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """What the set-points' header says of the path, the limits and the masses."""
+    """Rows of the set-points' header about the path, the limits and the masses."""
     return [(name, _spelled(value)) for name, value in header.items() if name.startswith(_STATED)]
 
 
 def _spelled(value: Any) -> str:
-    """Plain data in words: what is empty is none."""
+    """Plain data in words; empty data is "none"."""
     if isinstance(value, dict):
         return "; ".join(
             f"{name} ({_spelled(v)})" if isinstance(v, dict) else f"{name} {_spelled(v)}" for name, v in value.items()
@@ -163,7 +163,7 @@ def _embedded(png: bytes) -> str:
 
 
 def _numbers(value: Any) -> str:
-    """A number, a row, or rows apart by semicolons."""
+    """A number, a row of numbers, or rows with semicolons between them."""
     if not isinstance(value, tuple):
         return f"{value:.6g}"
     return ("; " if isinstance(value[0], tuple) else ", ").join(_numbers(v) for v in value)

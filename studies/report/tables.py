@@ -6,16 +6,16 @@ from collections.abc import Sequence
 
 from studies.stages import Outcome, Proof, shown_pose
 
-PROOFS = ("claim, at every pose", "answer", "boxes", "time [s]", "lowest sampled", "above the bound by", "at pose")
+PROOFS = ("claim at every pose", "answer", "boxes", "time [s]", "lowest sampled", "sampled - bound", "at pose")
 
 
 def margin_columns(outcome: Outcome) -> tuple[str, ...]:
-    """Of `margin_rows`."""
-    return "margin", "wanted", f"{outcome.before}, worst", "result, worst", "at pose"
+    """The headings of `margin_rows`."""
+    return "margin", "wanted", f"worst value, {outcome.before}", "worst value, result", "at pose"
 
 
 def margin_rows(outcome: Outcome) -> list[tuple[str, ...]]:
-    """Under `margin_columns`: the worst of each margin."""
+    """The worst value of each margin, in the columns `margin_columns`."""
     wanted = {r.margin: f">= {r.at_least:g}" for r in outcome.problem.requirements}
     if outcome.study.optimise:
         wanted.setdefault(outcome.problem.objective, "as large as possible")
@@ -32,7 +32,7 @@ def margin_rows(outcome: Outcome) -> list[tuple[str, ...]]:
 
 
 def proof_rows(proofs: Sequence[Proof]) -> list[tuple[str, ...]]:
-    """Under `PROOFS`: the answer to each claim; a pose where it is refuted, or in a box that is left."""
+    """The answer to each claim, in the columns `PROOFS`, with a pose that refutes it or one in an undecided box."""
     return [
         (
             proof.claim,
@@ -53,5 +53,5 @@ def _where(proof: Proof) -> str:
         pose = shown_pose(certificate.counterexample)
         return pose if certificate.within_reach else f"out of reach: {pose}"
     if len(certificate.left):
-        return f"{len(certificate.left)} boxes left, one around {shown_pose(certificate.left[0].mean(axis=0))}"
+        return f"{len(certificate.left)} undecided boxes, one around {shown_pose(certificate.left[0].mean(axis=0))}"
     return ""

@@ -1,4 +1,4 @@
-"""Folders of results: what a run leaves there."""
+"""Folders of results, and the files that a run writes there."""
 
 from studies.results.map_files import map_names, write_map
 from studies.results.output_folder import OutputFolder, Written

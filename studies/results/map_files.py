@@ -1,4 +1,4 @@
-"""What a map leaves in its folder: the picture, the numbers node by node, and the boundary."""
+"""The files of a map: the picture, the numbers node by node, and the boundary."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from studies.study_file import Study
 
 
 def map_names(request: MapRequest) -> tuple[str, str, str]:
-    """Of the picture, the nodes and the boundary."""
+    """The names of the files with the picture, the nodes and the boundary."""
     stem = _stem(request)
     return f"{stem}.png", f"{stem}.csv", f"{stem}_boundary.csv"
 
 
 def write_map(outcome: MapOutcome, study: Study, folder: OutputFolder) -> Written:
-    """Picture, nodes and boundary; all or none of them.
+    """Write picture, nodes and boundary: all of them or none.
 
     Raises:
         CannotWrite, FileInTheWay: as `OutputFolder.write`.
@@ -37,7 +37,7 @@ def _stem(request: MapRequest) -> str:
 
 
 def nodes_text(outcome: MapOutcome) -> str:
-    """One row a node: where it is, the worst value, and the pose that has it; an empty value is out of reach."""
+    """One row for each node: its place, the worst value, and the pose with it. An empty value is out of reach."""
     r, chart = outcome.request, outcome.found.map
     first, second = np.meshgrid(chart.first, chart.second)
     columns = [f"{name} [{unit_of(r, name)}]" for name in r.section.axes]
@@ -50,14 +50,14 @@ def nodes_text(outcome: MapOutcome) -> str:
 
 
 def boundary_text(outcome: MapOutcome) -> str:
-    """One row a point of the closed lines around the level set, with the line's number."""
+    """One row for each point of the closed lines around the level set, with the line's number."""
     columns = ["line", *(f"{name} [{unit_of(outcome.request, name)}]" for name in outcome.request.section.axes)]
     lines = [np.column_stack([np.full(len(line), k), line]) for k, line in enumerate(outcome.found.boundary)]
     return _csv(outcome, columns, np.concatenate([np.empty((0, 3)), *lines]))
 
 
 def _csv(outcome: MapOutcome, columns: Sequence[str], table: Array) -> str:
-    """Header lines that say what made the table, then the table."""
+    """Header lines that state how the table was made, then the table."""
     head = [f"# {key}: {json.dumps(value)}" for key, value in outcome.header().items()]
     rows = [",".join("" if np.isnan(v) else f"{v:.9g}" for v in row) for row in table]
     return "\n".join([*head, ",".join(columns), *rows]) + "\n"

@@ -1,7 +1,8 @@
 """A folder of results, and the list of what this program wrote there.
 
-The list, `linkwright_files.json`, has the SHA-256 of each file. A file that still has its content is the program's own:
-it may be replaced, and is removed once another question's files of its kind are written. Any other file is the user's.
+The list, `linkwright_files.json`, has the SHA-256 of each file. A file that still has this content belongs to the
+program: it may be replaced, and it is removed when files of its kind are written for another question. Any other file
+belongs to the user.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from trajectory import CannotWrite, require_writable, write_files
 
 try:
     import fcntl
-except ImportError:  # on Windows, where two commands at once are not kept apart
+except ImportError:  # on Windows nothing stops two commands from writing to one folder at once
     fcntl = None  # type: ignore[assignment]
 
 LIST = "linkwright_files.json"
@@ -29,12 +30,13 @@ Contents = Mapping[str, str | bytes]  # by the file's name in the folder
 
 
 class FileInTheWay(LinkwrightError):
-    """A file of the user stands where a result would be written."""
+    """A file of the user has the name of a result."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         super().__init__(
-            f"{path}: found a file that is not as this program wrote it; expected none, or --force to replace it"
+            f"{path}: found a file that this program did not write, or that changed since; "
+            "expected no such file, or --force to replace it"
         )
 
 
@@ -49,7 +51,7 @@ class Own:
 
 @dataclass(frozen=True)
 class Written:
-    """What a command wrote and removed, and what stays from earlier commands and answers another question."""
+    """The files that a command wrote or removed, and those of earlier commands that answer another question."""
 
     files: tuple[Path, ...] = ()
     removed: tuple[Path, ...] = ()
@@ -61,7 +63,7 @@ class Written:
 
 @dataclass(frozen=True)
 class OutputFolder:
-    """A folder that commands write into; with `force`, files of the user are replaced too, and never removed."""
+    """A folder that commands write into. With `force`, files of the user are replaced too; they are never removed."""
 
     path: Path
     force: bool = False
@@ -77,7 +79,7 @@ class OutputFolder:
         self._require_free(names, self._list())
 
     def owns(self, name: str) -> bool:
-        """Whether a file is as this program wrote it.
+        """Whether a file still has the content that this program wrote.
 
         Raises:
             CannotWrite: the list cannot be used.
@@ -85,11 +87,11 @@ class OutputFolder:
         return self._unchanged(name, self._list())
 
     def write(self, files: Mapping[str, Contents], made_for: str) -> Written:
-        """Write files, and remove the program's own ones of the same kinds that answer another question.
+        """Write files, and remove the program's own files of the same kinds that answer another question.
 
         Args:
             files: by kind.
-            made_for: digest of the question that they answer.
+            made_for: digest of the question that the files answer.
 
         Raises:
             FileInTheWay: a file of the user is in the way; nothing is written then.
@@ -122,7 +124,7 @@ class OutputFolder:
 
     @contextmanager
     def _alone(self) -> Iterator[None]:
-        """No other command writes into the folder meanwhile; a folder that stays empty is removed again."""
+        """Keep other commands from writing into the folder meanwhile. A folder that stays empty is removed again."""
         missing = [path for path in (self.path, *self.path.parents) if not path.exists()]
         try:
             self.path.mkdir(parents=True, exist_ok=True)
@@ -153,7 +155,7 @@ class OutputFolder:
                 raise ValueError
         except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
             raise CannotWrite(
-                file, "this is not Linkwright's list of its files; expected it as it was written, or no such file"
+                file, "this is not a list of files by Linkwright; expected the list unchanged, or no such file"
             ) from None
         return entries
 
@@ -163,15 +165,16 @@ def require_free(file: Path, force: bool, content: str | bytes | None = None) ->
 
     Args:
         force: a file that is there may be replaced.
-        content: a file that has it already is in nobody's way.
+        content: what will be written; a file that already has it is accepted.
 
     Raises:
-        FileInTheWay, CannotWrite: it is there, or it is a folder.
+        FileInTheWay: there is a file with other content.
+        CannotWrite: it is a folder, or the system does not accept the name.
     """
     try:
         if file.is_dir():
             raise CannotWrite(file, "it is a folder")
-    except OSError as error:  # a name that the system does not take
+    except OSError as error:  # the system does not accept the name
         raise CannotWrite(file, error.strerror or str(error)) from error
     if os.path.lexists(file) and not force and not (content is not None and _has(file, _sha256(content))):
         raise FileInTheWay(file)

@@ -1,4 +1,4 @@
-"""What a run leaves in its folder."""
+"""The files that a run writes into its folder."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ Files = dict[str, Contents]  # by kind
 
 
 def run_names(study: Study, drive_files: Sequence[str]) -> list[str]:
-    """All that a run writes."""
+    """The names of all files that a run writes."""
     return [*optimum_names(study), *report_names(drive_files)]
 
 
 def optimum_names(study: Study) -> list[str]:
-    """The optimum, and the certificates beside it."""
+    """The names of the optimum and of the certificates beside it."""
     return [FILE, *(file_of(claim.margin) for claim in claims_of(study, problem_of(study)))]
 
 
 def report_names(drive_files: Sequence[str]) -> list[str]:
-    """All that a report writes."""
+    """The names of all files that a report writes."""
     return [REPORT, MECHANISM, *drive_files]
 
 
 def made_for(study: Study, robot: Mechanism) -> str:
-    """Digest of the question that files answer; which formats they have belongs to none."""
+    """Digest of the question that files answer. The formats of the files do not change it."""
     asked = study.model_copy(update={"title": ""})
     if asked.trajectory is not None:
         asked = asked.model_copy(update={"trajectory": asked.trajectory.model_copy(update={"files": ("csv",)})})
@@ -47,7 +47,7 @@ def made_for(study: Study, robot: Mechanism) -> str:
 
 
 def write_optimum(outcome: Outcome, folder: OutputFolder) -> Written:
-    """The optimum alone, before its cycle and its proofs.
+    """Write the optimum alone, before its cycle and its proofs.
 
     Raises:
         RequirementFailed: a requirement is not met; nothing is written then.
@@ -59,10 +59,12 @@ def write_optimum(outcome: Outcome, folder: OutputFolder) -> Written:
 
 
 def write_run(outcome: Outcome, folder: OutputFolder, command: str, beside: OutputFolder | None) -> Written:
-    """Optimum, certificates, report and set-points; `beside` is the study's folder where the first two go too.
+    """Write optimum, certificates, report and set-points.
+
+    `beside` is the study's folder if optimum and certificates go there too.
 
     Raises:
-        As `write_optimum`.
+        RequirementFailed, CannotWrite, FileInTheWay: as `write_optimum`.
     """
     outcome.require_all()
     question = made_for(outcome.study, outcome.robot)
@@ -72,7 +74,7 @@ def write_run(outcome: Outcome, folder: OutputFolder, command: str, beside: Outp
 
 
 def write_report(outcome: Outcome, folder: OutputFolder, command: str) -> Written:
-    """Report and set-points, as `write_run` but for the optimum."""
+    """Write report and set-points; as `write_run`, without the optimum."""
     outcome.require_all()
     return folder.write(_report(outcome, command), made_for(outcome.study, outcome.robot))
 
@@ -86,7 +88,7 @@ def _report(outcome: Outcome, command: str) -> Files:
 
 
 def write_proofs(question: Question, proofs: Sequence[Proof], folder: OutputFolder) -> Written:
-    """Every certificate, the boxes left of an undecided one included.
+    """Write every certificate. That of an undecided claim includes its undecided boxes.
 
     Raises:
         CannotWrite, FileInTheWay: as `OutputFolder.write`.
@@ -97,22 +99,22 @@ def write_proofs(question: Question, proofs: Sequence[Proof], folder: OutputFold
 
 
 def claim_file(margin: str) -> str:
-    """Where `certify` writes its certificate."""
+    """The file that `certify` writes a margin's certificate to."""
     return f"{margin}.npz"
 
 
 def write_model(robot: Mechanism, study: Study, rod_middle: float | None, file: Path, force: bool = False) -> Path:
-    """The robot as an MJCF file that starts where the study's cycle does, with its payload; else at home, empty.
+    """Write the robot as an MJCF file: at the start of the study's cycle with the payload, else at home without load.
 
     Args:
-        robot: whose geometry and masses are written.
-        study: asks for the cycle.
+        robot: the robot with its geometry and masses.
+        study: the study with the cycle, if any.
         rod_middle: share of each rod's mass at its middle; None for the robot's own.
-        file: what to write.
-        force: replace a file that is there.
+        file: the file to write.
+        force: whether an existing file may be replaced.
 
     Raises:
-        InvalidValue: the mechanism has no such model.
+        InvalidValue: MJCF cannot describe this mechanism.
         HomeOutOfReach, UnreachablePose: a limb cannot reach home, or the start.
         CannotWrite, FileInTheWay: the file cannot be written.
     """
@@ -129,10 +131,10 @@ def write_model(robot: Mechanism, study: Study, rod_middle: float | None, file: 
 
 
 def write_setpoints(timing: Timing, study: Study, folder: OutputFolder) -> Written:
-    """Only the set-points, in the formats asked for.
+    """Write only the set-points, in the formats that the study asks for.
 
     Raises:
-        InvalidValue: a format cannot say them.
+        InvalidValue: a format cannot express them.
         CannotWrite, FileInTheWay: as `OutputFolder.write`.
     """
     assert study.trajectory is not None

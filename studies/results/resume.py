@@ -1,4 +1,4 @@
-"""A run into a folder: its optimum is on the disk before the cycle and the proofs, and the next run takes it up."""
+"""A run into a folder. It writes its optimum before the cycle and the proofs, and the next run can start from it."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ def run_into(folder: OutputFolder, study: Study, fresh: bool, progress: Progress
 
     Args:
         folder: where the optimum is kept.
-        fresh: whether to optimise though the folder has an optimum that answers the study's design question.
+        fresh: whether to optimise even if the folder has an optimum for the study's design question.
 
     Raises:
-        What the stages raise; the optimum stays in the folder then, once it is found.
+        LinkwrightError: any error of a stage. An optimum that was found before it stays in the folder.
     """
     known = None if fresh else known_optimum(folder, study)
     if known is not None:
         progress(
-            Lasting(f"{folder.path / FILE}: taken up, it answers the same design question (--fresh optimises anew)")
+            Lasting(f"{folder.path / FILE}: used, as it answers the same design question (--fresh optimises again)")
         )
         robot = known.robot(study)
         outcome = designed(study, robot, progress, str(known.data["made_by"]["solver_status"]))
@@ -36,23 +36,23 @@ def run_into(folder: OutputFolder, study: Study, fresh: bool, progress: Progress
             written = write_optimum(outcome, folder)
             progress(Lasting(f"{folder.path / FILE}: written, before the cycle and the proofs"))
             for path in written.left:
-                progress(Lasting(f"{path}: left as an earlier command wrote it, until this one ends"))
+                progress(Lasting(f"{path}: from an earlier command; kept until this command ends"))
     return certified(with_cycle(outcome, progress), certificates, progress)
 
 
 def _known_certificates(folder: OutputFolder, study: Study, robot: Mechanism) -> dict[str, Certificate]:
     try:
         return committed_certificates(study, folder.path, robot)
-    except UnreadableCertificate:  # of another version of this program, or gone: proved again
+    except UnreadableCertificate:  # it is missing or of another version of this program, so prove again
         return {}
 
 
 def known_optimum(folder: OutputFolder, study: Study) -> Optimum | None:
-    """The folder's optimum where this program wrote it and it answers the study's design question."""
+    """The folder's optimum if this program wrote it for the study's design question, else None."""
     if study.optimise is None or not folder.owns(FILE):
         return None
     try:
         optimum = read_optimum(folder.path / FILE)
         return optimum if optimum.answers_design(study) else None
-    except StudyError:  # of another version of this program
+    except StudyError:  # another version of this program wrote it
         return None

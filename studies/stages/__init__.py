@@ -1,4 +1,4 @@
-"""The stages of a study, each from data to data."""
+"""The stages of a study; each takes data and returns data."""
 
 from studies.stages.claim_rows import ROUNDING, Row, agrees, at_least, same, same_digest, shown_pose
 from studies.stages.cycle_stage import Timing, require_on_cycle, time_cycle

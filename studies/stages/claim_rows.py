@@ -6,15 +6,15 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-AGREE = 1e-6  # relative: what another machine's rounding may change in a figure
-ROUNDING = 1e-9  # m or rad: of a pose in the file, and of a sum
+AGREE = 1e-6  # relative: how much another machine's rounding may change a figure
+ROUNDING = 1e-9  # m or rad: how much rounding may change a pose in the file, or a sum
 
 
 @dataclass(frozen=True)
 class Row:
-    """One claim: what it is, what the file says or the study wants, what was found, and by how much it holds.
+    """One claim: its words, the expected and the found value, and the margin by which it holds.
 
-    `margin` is negative where the claim fails.
+    `margin` is negative if the claim fails.
     """
 
     what: str
@@ -30,17 +30,17 @@ class Row:
 
 
 def same(what: str, claimed: object, found: object) -> Row:
-    """The very same."""
+    """Expect the same value."""
     return Row(what, str(claimed), str(found), 0.0 if claimed == found else -1.0)
 
 
 def same_digest(what: str, claimed: object, found: object) -> Row:
-    """The very same; the first digits are shown."""
+    """Expect the same digest; the row shows its first digits."""
     return replace(same(what, claimed, found), expected=str(claimed)[:12], found=str(found)[:12])
 
 
 def agrees(what: str, claimed: object, found: float) -> Row:
-    """The same number but for another machine's rounding."""
+    """Expect the same number, except for another machine's rounding."""
     if isinstance(claimed, bool) or not isinstance(claimed, float | int) or not math.isfinite(claimed):
         return Row(what, str(claimed), f"{found:.9g}", -1.0)
     off = abs(found - claimed)
@@ -48,7 +48,7 @@ def agrees(what: str, claimed: object, found: float) -> Row:
 
 
 def at_least(what: str, bound: float, found: float, pose: Any) -> Row:
-    """No lower than a bound, at a pose where there is one."""
+    """Expect a value that is not below a bound; `pose` is where it was found, or None."""
     where = "" if pose is None else shown_pose(pose)
     return Row(what, f">= {bound:g}", f"{found:.9g}", found - bound, where)
 

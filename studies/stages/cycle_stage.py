@@ -1,4 +1,4 @@
-"""A study's cycle on a robot: the approach to it, timing, verification, set-points, and its requirements on the way."""
+"""A study's cycle on a robot: approach, timing, verification, set-points, and the requirements on its path."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _MOST_SETPOINTS = 1_000_000
 
 @dataclass(frozen=True)
 class Timing:
-    """A cycle, its set-points, and the way to its start.
+    """A cycle, its set-points, and the move to its start.
 
     Attributes:
-        cycle: both ways, timed and verified.
-        setpoints: of the cycle, stretched to whole periods and verified again.
-        approach: from home; None where the study asks for none.
-        lower_bound: no motion on the path itself takes less for the way there, even without a limit of jerk [s].
+        cycle: the way there and the way back, timed and verified.
+        setpoints: the cycle's set-points, stretched to whole periods and verified again.
+        approach: the move from home; None if the study asks for none.
+        lower_bound: time that every motion on this path needs for the way there, even without a jerk limit [s].
         seconds: wall-clock time of timing and verification.
     """
 
@@ -44,11 +44,11 @@ class Timing:
 
     @property
     def half_cycle_name(self) -> str:
-        """Of `half_cycle` among the figures: "closed_cycle" where the way ends where it starts and none leads back."""
+        """The name of `half_cycle` among the figures; "closed_cycle" if the way there is closed, with no way back."""
         return "half_cycle" if self.cycle.back else "closed_cycle"
 
     def figures(self) -> dict[str, Any]:
-        """What the timing claims, as plain data."""
+        """The figures that the timing claims, as plain data."""
         there = [piece.timed for piece in self.cycle.there]
         return {
             "law": there[0].motion.name,
@@ -66,7 +66,7 @@ class Timing:
 
 
 def margins_on(problem: Problem, robot: Mechanism, ways: Sequence[Way], grid: int) -> dict[str, float]:
-    """The worst value of each requirement's margin on what a cycle travels; NaN counts as -inf."""
+    """The worst value of each requirement's margin on the ways of a cycle; NaN counts as -inf."""
     poses = np.concatenate([way.evaluate(np.linspace(0.0, way.length, grid + 1), 0)[0] for way in ways])
     found = {}
     for requirement in problem.requirements:
@@ -97,13 +97,14 @@ def time_cycle(study: Study, robot: Mechanism) -> Timing:
     """Time, verify and sample the study's cycle on a robot.
 
     Raises:
-        RequirementFailed: the cycle leaves the study's region; and what the timing law and the verification raise.
+        RequirementFailed: the cycle leaves the study's region.
+        LinkwrightError: any error of the timing law or the verification.
     """
     asked = study.trajectory
     assert asked is not None
     started = time.perf_counter()
     path, limits, payload = path_of(asked, robot.pose_names), limits_of(asked.limits), asked.payload
-    _require_few(_least_duration(robot, path, limits), asked.period)  # before a proof of every hour of it
+    _require_few(_least_duration(robot, path, limits), asked.period)  # before an hour-long path is proved
     approach = _approach(study, robot, path, limits)
     timing, cannot_keep = timing_of(study)
     cycle = there_and_back(robot, path, limits, payload, timing, asked.payload_back, cannot_keep)
@@ -116,11 +117,12 @@ def time_cycle(study: Study, robot: Mechanism) -> Timing:
 
 
 def _approach(study: Study, robot: Mechanism, path: Path, limits: Limits) -> Move | None:
-    """The move from home to the path's start, before hours of work go into what it leads to; None where none is asked.
+    """The move from home to the path's start; None if none is asked. It is planned first, as the path takes longer.
 
     Raises:
-        ApproachFailed: it cannot be, and why.
-        HomeOutOfReach, UnreachablePose: of home, of the path's start.
+        ApproachFailed: there is no such move, and why.
+        HomeOutOfReach: a limb cannot reach home.
+        UnreachablePose: a limb cannot reach the path's start.
     """
     from trajectory import plan_move
 
@@ -139,7 +141,7 @@ def _approach(study: Study, robot: Mechanism, path: Path, limits: Limits) -> Mov
 
 
 def _least_duration(robot: Mechanism, path: Path, limits: Limits) -> float:
-    """What the joints' travel takes at their speed limits, on the way there [s]; from few poses, so never too much."""
+    """Lower bound of the time of the way there [s], from the joints' speed limits and a few poses."""
     (poses,) = path.evaluate(np.linspace(0.0, path.length, 101), 0)
     joints = to_actuators(robot, robot.inverse(poses))
     speed = limits.of_joints("speed", joints.shape[1])
@@ -147,10 +149,10 @@ def _least_duration(robot: Mechanism, path: Path, limits: Limits) -> float:
 
 
 def _require_few(duration: float, period: float) -> None:
-    """Check that a cycle has not more set-points than a drive and a memory can hold.
+    """Check that a cycle has no more set-points than a drive and the memory can hold.
 
     Raises:
-        InvalidValue: of the period.
+        InvalidValue: the period is too short.
     """
     if not duration <= _MOST_SETPOINTS * period:
         expected = f"one that cuts {duration:.3g} s into at most {_MOST_SETPOINTS:,} set-points"
@@ -160,5 +162,5 @@ def _require_few(duration: float, period: float) -> None:
 def _require_inside(region: Region, cycle: Cycle) -> None:
     out = [found for way in cycle.ways if (found := leaving(region, way, cycle.robot.pose_names))]
     if out:
-        room = "room to the region's boundary on the cycle [m or rad]"
+        room = "distance inside the region's boundary on the cycle [m or rad]"
         raise RequirementFailed([Failed(room, 0.0, found.room, tuple(found.pose.tolist())) for found in out])

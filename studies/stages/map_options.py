@@ -1,4 +1,4 @@
-"""What `linkwright map` is asked: from the study and the options to an index over a section."""
+"""From the study and the options of `linkwright map` to an index over a section."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from studies.study_file import LARGEST, Study
 from trajectory import in_si
 
 DEFAULT = "fvi"
-_FVI_BOUND = 1.0  # what the index's own lower bounds mean by good enough
+_FVI_BOUND = 1.0  # at 1 the robot just gives the wanted speed and force
 
 
 class InvalidOption(LinkwrightError):
-    """An option of the command line that cannot be used."""
+    """An option of the command line has a value that cannot be used."""
 
     def __init__(self, option: str, found: object, expected: str) -> None:
         self.option, self.found, self.expected = option, found, expected
@@ -26,11 +26,11 @@ class InvalidOption(LinkwrightError):
 
 @dataclass(frozen=True)
 class MapRequest:
-    """A checked question.
+    """A checked request for a map.
 
     Attributes:
-        robot, index, section: what is mapped.
-        bound: the index is to be at least this (at most, for the condition number); None takes all in reach.
+        robot, index, section: the robot, its index, and the plane with its other coordinates.
+        bound: the index should be at least this (at most, for the condition number); None takes all in reach.
         fvi_bounds, characteristic_length: what the indices are measured with.
     """
 
@@ -56,14 +56,14 @@ def map_request(
     over: Sequence[str] = (),
     at_least: float | None = None,
 ) -> MapRequest:
-    """Put the options to the study's robot and region.
+    """Check the options against the study's robot and region.
 
     Args:
-        margin: one of the robot's margins; the FVI by default.
-        section: two coordinates, "y,z"; the region's first two free ones by default.
-        at: each "name=value" or "name=value,value,...", a name perhaps with `_deg` or `_mm`.
-        over: each "name=low:high", which takes the place of the region's own interval; "radius=0.7" for a cylinder.
-        at_least: the bound; the study's requirement of this margin by default, for the FVI at last 1.
+        margin: one of the robot's margins; by default the FVI.
+        section: two coordinates, such as "y,z"; by default the region's first two free ones.
+        at: each "name=value" or "name=value,value,..."; a name may end in `_deg` or `_mm`.
+        over: each "name=low:high", which replaces the region's own interval; "radius=0.7" for a cylinder.
+        at_least: the bound; by default the study's requirement of this margin, else 1 for the FVI.
 
     Raises:
         InvalidOption: names the option, what was found and what would be right.
@@ -91,7 +91,7 @@ def map_request(
 
 
 def _region(study: Study, robot: Mechanism, over: Sequence[str]) -> Region:
-    """The study's region with other bounds where they are given."""
+    """The study's region, with the bounds that `over` replaces."""
     region = region_of(study)
     known = (*robot.pose_names, "radius") if isinstance(region, Cylinder) else robot.pose_names
     changed = _assignments("--over", over, known, angles_of(robot), ":")
@@ -100,7 +100,7 @@ def _region(study: Study, robot: Mechanism, over: Sequence[str]) -> Region:
             return Box(**{**region.intervals, **{name: _pair(name, pair) for name, pair in changed.items()}})
         radius = changed.pop("radius", (region.radius,))
         if len(radius) != 1:
-            raise InvalidOption("--over", f"{len(radius)} values for radius", "radius=value")
+            raise InvalidOption("--over", f"{len(radius)} values for radius", "radius=VALUE")
         others = {n: pair for n, pair in region.intervals.items() if n not in ("x", "y")}
         return Cylinder(radius[0], **{**others, **{name: _pair(name, pair) for name, pair in changed.items()}})
     except InvalidRegion as error:
@@ -109,14 +109,14 @@ def _region(study: Study, robot: Mechanism, over: Sequence[str]) -> Region:
 
 def _pair(name: str, values: tuple[float, ...]) -> tuple[float, float]:
     if len(values) != 2:
-        raise InvalidOption("--over", f"{len(values)} values for {name}", f"{name}=low:high")
+        raise InvalidOption("--over", f"{len(values)} values for {name}", f"{name}=LOW:HIGH")
     return values[0], values[1]
 
 
 def _assignments(
     option: str, given: Sequence[str], known: Sequence[str], angles: Sequence[str], separator: str
 ) -> dict[str, tuple[float, ...]]:
-    """Values in SI by name, from texts like "name_deg=1,2" with the separator between the values."""
+    """Values in SI by name, from texts such as "name_deg=1,2"; `separator` stands between the values."""
     found: dict[str, tuple[float, ...]] = {}
     for text in given:
         key, equals, right = text.partition("=")
@@ -125,7 +125,7 @@ def _assignments(
             name, _, suffix = name.rpartition("_")
         if not equals or name not in known or suffix not in ("", _suffix(name, angles)):
             names = ", ".join(f"{n}[_{_suffix(n, angles)}]" for n in known)
-            raise InvalidOption(option, text, f"name=value with a name of {names}")
+            raise InvalidOption(option, text, f"NAME=VALUE, where NAME is one of {names}")
         if name in found:
             raise InvalidOption(option, f"{name} twice", "each name once")
         try:
@@ -133,7 +133,7 @@ def _assignments(
         except ValueError:
             raise InvalidOption(option, text, f"numbers with '{separator}' between them") from None
         if not all(abs(v) <= LARGEST for v in values):  # NaN is not
-            raise InvalidOption(option, text, f"finite numbers, of a size up to {LARGEST:g}")
+            raise InvalidOption(option, text, f"finite numbers from {-LARGEST:g} to {LARGEST:g}")
         found[name] = values
     return found
 

@@ -1,4 +1,4 @@
-"""The map of a study: sampled until its figures stand still and, where asked, the part of it that is proved."""
+"""The map of a study: it is sampled until its figures no longer change and, on request, partly proved."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from studies.stages.timed_stage import Progress, stage
 
 @dataclass(frozen=True)
 class MapOutcome:
-    """A map, its level set, and the certified region where one was asked for."""
+    """A map, its level set (the part that keeps the bound), and the certified region if one was asked for."""
 
     request: MapRequest
     found: LevelSet
@@ -25,13 +25,13 @@ class MapOutcome:
 
     @property
     def area_unit(self) -> str:
-        """Of the plane: the product of its axes' units."""
+        """The unit of an area in the plane: the product of its axes' units."""
         units = [unit_of(self.request, name) for name in self.request.section.axes]
         return f"{units[0]}²" if units[0] == units[1] else " ".join(units)
 
     @property
     def certified_area(self) -> float | None:
-        """Of the proved part, in the plane; None where nothing was asked or a radius is no area in this plane."""
+        """Area of the proved part in the plane; None if no proof was asked for, or if it has only a radius."""
         if self.certified is None:
             return None
         axes = self.request.section.axes
@@ -41,24 +41,25 @@ class MapOutcome:
 
     @property
     def still_moves(self) -> str:
-        """What figures that did not stand still are worth, in words; "" where they did."""
+        """A warning in words that the figures still change; "" if they do not."""
         found = self.found
         if found.settled:
             return ""
         nodes = " x ".join(map(str, found.map.values.shape[::-1]))
         if math.isinf(found.moved):
-            return f"one map of {nodes} nodes only, or a part that the map before did not see: may be far off"
-        return f"figures still move by {found.moved:.2g} with {nodes} nodes; {found.tolerance:g} was asked"
+            return f"only one map of {nodes} nodes, or a part that the map before did not show: may be far off"
+        changed = f"the last refinement, to {nodes} nodes, changed the figures by {found.moved:.2g}"
+        return f"{changed}; the tolerance is {found.tolerance:g}"
 
     @property
     def none_seen(self) -> str:
-        """What an area of 0 says, in words."""
+        """The meaning of an area of 0, in words."""
         axes, steps = self.request.section.axes, self.found.step
         apart = " and ".join(f"{v:.2g} {unit_of(self.request, n)}" for n, v in zip(axes, steps, strict=True))
-        return f"no node keeps the bound; they are {apart} apart, a narrower part would be missed"
+        return f"no node keeps the bound; the nodes are {apart} apart and could miss a narrower part"
 
     def header(self) -> dict[str, Any]:
-        """What made the numbers, as plain data."""
+        """How the numbers were made, as plain data."""
         r = self.request
         return {
             "linkwright": version("linkwright"),
@@ -75,7 +76,7 @@ class MapOutcome:
         }
 
     def figures(self) -> dict[str, Any]:
-        """The numbers, as plain data; `moved` is by how much the last refinement changed each."""
+        """The numbers, as plain data; `moved` has the change of each in the last refinement."""
         now, before = self.found.figures, self.found.coarser
         value, pose = self.found.map.lowest
         data: dict[str, Any] = {
@@ -103,22 +104,22 @@ class MapOutcome:
 
 
 def unit_of(request: MapRequest, name: str) -> str:
-    """Of a pose coordinate."""
+    """The unit of a pose coordinate."""
     return "rad" if name in angles_of(request.robot) else "m"
 
 
 def run_map(
     request: MapRequest, tolerance: float, certify: bool, progress: Progress, seconds: float = math.inf
 ) -> MapOutcome:
-    """Sample, and prove where asked.
+    """Sample the map, and prove a part of it if asked.
 
     Args:
         tolerance: as in `level_set`.
-        seconds: for the map, and as many for the proof; each then says what it reached.
+        seconds: time for the map, and the same again for the proof. Each returns what it reached by then.
 
     Raises:
-        InvalidOption: a tolerance or a time not above 0, or no family of regions of which something could be proved.
-        OutOfTime: not even a coarse map was complete.
+        InvalidOption: a tolerance or a time is not above 0, or no region can be proved with these options.
+        OutOfTime: the time ended before a coarse map was complete.
     """
     if not (np.isfinite(tolerance) and tolerance > 0.0):
         raise InvalidOption("--tolerance", tolerance, "a finite number > 0")
@@ -135,7 +136,7 @@ def run_map(
 
 
 def _proof(request: MapRequest, seconds: float) -> Callable[[], CertifiedRegion]:
-    """The search for the certified region, with everything that may be wrong checked before anything runs."""
+    """The search for the certified region. The options are checked here, before anything runs."""
     r = request
     if r.bound is None:
         raise InvalidOption("--certified", f"no bound of {r.index.name}", "--at-least C")
@@ -148,7 +149,7 @@ def _proof(request: MapRequest, seconds: float) -> Callable[[], CertifiedRegion]
 
 
 def _fixed(request: MapRequest) -> Region:
-    """The region with the section's single values in place of its intervals."""
+    """The region, with the section's single values instead of its intervals."""
     region, at = request.section.region, request.section.at
     for name, values in at.items():
         if len(values) != 1:
@@ -157,6 +158,6 @@ def _fixed(request: MapRequest) -> Region:
     if not isinstance(region, Cylinder):
         return Box(**{**region.intervals, **fixed})
     if fixed.keys() & {"x", "y"}:
-        raise InvalidOption("--certified", f"a cylinder at {' and '.join(fixed)}", "x and y on an axis or open")
+        raise InvalidOption("--certified", f"a cylinder with fixed {' and '.join(fixed)}", "x and y free, or axes")
     others = {name: pair for name, pair in region.intervals.items() if name not in ("x", "y")}
     return Cylinder(region.radius, **{**others, **fixed})

@@ -1,4 +1,4 @@
-"""The stages of a study, each from data to data; nothing here writes a file."""
+"""The stages of a study; each takes data and returns data. Nothing here writes a file."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ class Outcome:
     """All that a study's report shows.
 
     Attributes:
-        study, problem, region: what was asked.
-        robot: the geometry that stands at the end: the optimum, or the study's own.
-        synthesis: how it was found; None where the geometry was given, or found by an earlier run.
-        solver_status: the solver's last word on the geometry, or that it was given.
-        worst: the worst pose of each margin, by its name.
-        prototype: the same for the study's own geometry, where the robot has another.
-        on_cycle: the worst value of each requirement's margin on the cycle; empty without one.
-        timing: the cycle; None where the study asks for none.
-        prototype_timing: the cycle of the study's own geometry, to compare with; None without one.
-        proofs: what was tried to prove of every pose; empty before that stage.
+        study, problem, region: what the study asks.
+        robot: the robot with its final geometry: the optimum, or the study's own.
+        synthesis: how the geometry was found; None if it was given, or found by an earlier run.
+        solver_status: the solver's last status, or a note that the geometry was given.
+        worst: the worst poses, by margin.
+        prototype: the same for the study's own geometry; empty if the robot has that geometry.
+        on_cycle: the worst value of each requirement's margin on the cycle; empty without a cycle.
+        timing: the timed cycle; None if the study asks for none.
+        prototype_timing: the cycle of the study's own geometry, to compare with; None if there is none.
+        proofs: the answers to the claims; empty before that stage.
     """
 
     study: Study
@@ -51,23 +51,23 @@ class Outcome:
 
     @property
     def before(self) -> str:
-        """What the study's own geometry is called: the mechanism's prototype, or given where the study changes that."""
+        """Name of the study's own geometry: "prototype" if it is the mechanism's prototype, else "given"."""
         return "given" if self.study.geometry else "prototype"
 
     @property
     def question(self) -> Question:
-        """What is to be proved, of this robot."""
+        """What should be proved of this robot."""
         return Question(self.study, self.problem, self.region, self.robot)
 
     @property
     def active(self) -> list[str]:
-        """What holds the optimum back; empty where nothing was optimised."""
+        """The constraints that limit the optimum; empty if nothing was optimised."""
         if self.study.optimise is None:
             return []
         return active_sets(self.problem, self.robot, self.worst)
 
     def cycle_figures(self) -> dict[str, Any]:
-        """What the cycle claims, as plain data; empty without one."""
+        """The cycle's figures as plain data; empty without a cycle."""
         if self.timing is None:
             return {}
         return {**self.timing.figures(), "worst_on_the_path": self.on_cycle}
@@ -76,7 +76,7 @@ class Outcome:
         """Check every requirement, over the region and on the cycle, and that no claim is refuted.
 
         Raises:
-            RequirementFailed: with each one that fails.
+            RequirementFailed: it holds each requirement that fails.
         """
         failed = []
         for requirement in self.problem.requirements:
@@ -95,7 +95,7 @@ class Outcome:
 
 
 def optimise(study: Study, progress: Progress) -> Synthesis:
-    """The study's synthesis; what it raises, with the study's `[optimise]` table."""
+    """Run the study's synthesis. An error names the study's table `[optimise]`."""
     return synthesise(
         problem_of(study),
         region_of(study),
@@ -108,10 +108,10 @@ def optimise(study: Study, progress: Progress) -> Synthesis:
 
 
 def designed(study: Study, robot: Mechanism | None, progress: Progress, solver_status: str = GIVEN) -> Outcome:
-    """The geometry and its worst poses; with a robot given (an optimum that is known), nothing is optimised.
+    """The geometry and its worst poses. If a robot is given, such as a known optimum, nothing is optimised.
 
     Args:
-        solver_status: the solver's last word on the robot that is given.
+        solver_status: the solver's last status for the given robot.
     """
     problem, region = problem_of(study), region_of(study)
     if robot is None and study.optimise is not None:
@@ -128,10 +128,10 @@ def designed(study: Study, robot: Mechanism | None, progress: Progress, solver_s
 
 
 def with_cycle(outcome: Outcome, progress: Progress, compare: bool = True) -> Outcome:
-    """The outcome with the study's cycle, where it asks for one.
+    """The outcome with the study's cycle, if the study asks for one.
 
     Args:
-        compare: time it on the study's own geometry too, where the robot has another.
+        compare: also time the cycle on the study's own geometry, if the robot has another.
     """
     study, prototype = outcome.study, None
     if study.trajectory is None:
@@ -143,21 +143,21 @@ def with_cycle(outcome: Outcome, progress: Progress, compare: bool = True) -> Ou
         try:
             with stage("cycle of the study's own geometry", progress):
                 prototype = time_cycle(study, outcome.problem.robot)
-        except LinkwrightError as error:  # it is there to compare with, and need not be able to
-            progress(Lasting(f"the study's own geometry has no cycle to compare with: {error}"))
+        except LinkwrightError as error:  # this cycle is only for comparison, so the run goes on without it
+            progress(Lasting(f"the study's own geometry has no cycle for comparison: {error}"))
     return replace(outcome, on_cycle=on_cycle, timing=timing, prototype_timing=prototype)
 
 
 def run(study: Study, robot: Mechanism | None, progress: Progress, compare_cycles: bool = True) -> Outcome:
-    """Geometry and cycle; with a robot given, its geometry stands and nothing is optimised."""
+    """Geometry and cycle. If a robot is given, its geometry is kept and nothing is optimised."""
     return with_cycle(designed(study, robot, progress), progress, compare_cycles)
 
 
 def certified(outcome: Outcome, known: Mapping[str, Certificate], progress: Progress) -> Outcome:
-    """The outcome with the study's proofs; certificates that are known and prove a claim are only replayed.
+    """The outcome with the study's proofs. A known certificate that proves a claim is only replayed.
 
     Raises:
-        RequirementFailed: the dense search or a proof's search finds a requirement broken.
+        RequirementFailed: the dense search or a proof finds a pose where a requirement fails.
     """
     outcome.require_all()
     with stage("prove", progress, outcome.study.budget.prove):

@@ -1,4 +1,4 @@
-"""What a study has proved over its region, beyond what a dense sample finds."""
+"""The proofs of a study's claims at every pose of its region, not only at the poses of a sample."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from studies.building import problem_of, region_of
 from studies.stages.timed_stage import Progress
 from studies.study_file import Study
 
-_FEW = 4  # boxes: enough to run every kernel of a proof once
+_FEW = 4  # boxes; enough to run every compiled function of a proof once
 
 
 @dataclass(frozen=True)
 class Claim:
-    """`margin` is `at_least` this everywhere; with `best`, the best bound that can be proved, no lower than this."""
+    """The margin is at least `at_least` everywhere. With `best`, also find the best bound that can be proved."""
 
     margin: str
     at_least: float | None
@@ -32,7 +32,7 @@ class Proof:
 
     Attributes:
         certificate: the claim, its answer and the boxes behind it.
-        sampled: the lowest value that a search found; the true worst lies between it and what is proved.
+        sampled: the lowest value that a search found; the true worst value is between the proved bound and this.
         seconds: wall-clock time that the answer took.
     """
 
@@ -42,18 +42,18 @@ class Proof:
 
     @property
     def claim(self) -> str:
-        """In words."""
+        """The claim in words."""
         return f"{self.certificate.margin} >= {rounded_down(self.certificate.at_least, 7)}"
 
     @property
     def gap(self) -> float:
-        """How far the lowest sampled value is above the bound, in the margin's unit; negative where refuted."""
+        """The lowest sampled value minus the bound, in the margin's unit; negative if the claim is refuted."""
         return self.sampled - self.certificate.at_least
 
 
 @dataclass(frozen=True)
 class Question:
-    """What all claims of a study share."""
+    """The data that all claims of a study share."""
 
     study: Study
     problem: Problem
@@ -62,22 +62,22 @@ class Question:
 
     @property
     def measure(self) -> dict[str, Any]:
-        """What the FVI is measured with, as arguments."""
+        """The arguments that the FVI is measured with."""
         return {"bounds": self.problem.fvi_bounds, "characteristic_length": self.problem.characteristic_length}
 
     def claims(self) -> tuple[Claim, ...]:
-        """All that the study claims."""
+        """All claims of the study."""
         return claims_of(self.study, self.problem)
 
     def only(self, margin: str | None, at_least: float | None) -> tuple[Claim, ...]:
-        """The study's claims, or the one that is asked instead.
+        """The study's claims, or only the one about `margin`.
 
         Raises:
-            InvalidValue: the mechanism has no such margin, or the bound is for none.
+            InvalidValue: the mechanism has no such margin, the bound has no margin, or the bound is impossible.
         """
         if margin is None:
             if at_least is not None:
-                raise InvalidValue("--at-least", at_least, "--margin NAME beside it")
+                raise InvalidValue("--at-least", at_least, "--margin NAME with it")
             return self.claims()
         if margin not in self.robot.margins:
             raise InvalidValue("--margin", margin, f"one of {', '.join(self.robot.margins)}")
@@ -85,12 +85,14 @@ class Question:
             if not math.isfinite(at_least):
                 raise InvalidValue("--at-least", at_least, "a finite number")
             if margin == "reach" and at_least < 0.0:
-                raise InvalidValue("--at-least", at_least, "0 m or more for reach: every claim claims reach itself")
+                raise InvalidValue(
+                    "--at-least", at_least, "0 m or more for reach, as every claim includes that the pose is in reach"
+                )
             return (Claim(margin, at_least, best=False),)
         return (_claim(self.problem, margin),)
 
     def worst(self, margin: str) -> WorstPoses:
-        """What a dense search finds."""
+        """The worst poses that a dense search finds."""
         return worst_poses(self.robot, self.region, margin, about=self.study.dense_sample, **self.measure)
 
     def prove(
@@ -101,13 +103,13 @@ class Question:
         progress: Progress,
         seconds: float = math.inf,
     ) -> Proof:
-        """Answer a claim; one that is not decided in its time stays undecided.
+        """Answer a claim. If the time ends before a decision, the claim is undecided.
 
         Args:
-            worst: what a dense search found; None to search now.
-            known: a certificate that is replayed instead of a search for another where it proves the claim.
-            progress: told a line of text at each step.
-            seconds: that the proof may take.
+            worst: the worst poses that a dense search found; None to search now.
+            known: a certificate. If it proves the claim it is replayed, and no other is searched for.
+            progress: called with a line of text at each step.
+            seconds: time that the proof may take [s].
         """
         if worst is None:
             progress(f"worst poses of {claim.margin}")
@@ -126,11 +128,11 @@ class Question:
         return proof
 
     def compile(self, claim: Claim) -> None:
-        """Bound a few boxes, so that the kernels of a proof are compiled, or read from the disk."""
+        """Bound a few boxes, so that the functions of a proof are compiled, or read from the disk."""
         certify(self.robot, self.region, claim.margin, at_least=claim.at_least or 0.0, most_boxes=_FEW, **self.measure)
 
     def replay(self, certificate: Certificate, claim: Claim) -> int:
-        """How many boxes a certificate's replay bounds; what it raises, where it was made for anything else."""
+        """The number of boxes that a certificate's replay bounds. Another claim's certificate raises an error."""
         asked: dict[str, Any] = {"region": self.region, "margin": claim.margin, "at_least": claim.at_least}
         return replay(certificate, self.robot, **asked, **self.measure)
 
@@ -142,9 +144,10 @@ class Question:
         return known.status == "proved"
 
     def _certificate(self, claim: Claim, worst: float, progress: Progress, seconds: float) -> Certificate:
-        """A required bound within the tolerance of the worst case is the best, too; 0 is tried where none is proved.
+        """Search for a certificate of the claim.
 
-        The best bound has half of the time where it may have to be followed by the required one.
+        A proved required bound within the tolerance of the worst value also counts as the best. If no best bound is
+        proved, 0 is tried. The search for a best bound gets half of the time if the required bound may still follow.
         """
         asked, budget = self.study.certify, Budget(seconds)
         search: dict[str, Any] = self.measure | {"most_boxes": asked.most_boxes, "progress": progress}
@@ -160,7 +163,7 @@ class Question:
 
 
 def claims_of(study: Study, problem: Problem) -> tuple[Claim, ...]:
-    """The margins that the study names; else each required one, and the objective at its best."""
+    """Claims of the margins that the study names; by default each requirement, and the best bound of the objective."""
     margins = study.certify.margins
     if margins is None:
         margins = tuple(dict.fromkeys([*(r.margin for r in problem.requirements), problem.objective]))
@@ -173,16 +176,16 @@ def _claim(problem: Problem, margin: str) -> Claim:
 
 
 def question_of(study: Study, robot: Mechanism) -> Question:
-    """What a study asks to be proved of a robot."""
+    """The question that a study asks about a robot."""
     return Question(study, problem_of(study), region_of(study), robot)
 
 
 def prove_all(
     question: Question, worst: Mapping[str, WorstPoses], known: Mapping[str, Certificate], progress: Progress
 ) -> tuple[Proof, ...]:
-    """Every claim of the study; `worst` and `known` by margin, as far as there are any.
+    """Answer every claim of the study; `worst` and `known` are by margin and may lack some.
 
-    What the budget has left is shared by the claims that are left.
+    The claims that are left share the time that is left of the budget.
     """
     return prove_claims(question, question.claims(), worst, known, progress)
 
@@ -194,7 +197,7 @@ def prove_claims(
     known: Mapping[str, Certificate],
     progress: Progress,
 ) -> tuple[Proof, ...]:
-    """As `prove_all`, of these claims; the budget starts when the kernels are compiled, on a machine that is new."""
+    """Answer these claims as in `prove_all`. The budget starts only when the functions of a proof are compiled."""
     if claims:
         question.compile(claims[0])
     budget = Budget(question.study.budget.prove)

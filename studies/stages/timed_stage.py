@@ -1,4 +1,4 @@
-"""A stage of a command: its name, the time that it may take, and the time that it took."""
+"""A stage of a command: its name, its time budget, and the time that it took."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 Progress = Callable[[str], None]
-LONG = 2.0  # s: a stage that takes longer is told in a pipe, too
+LONG = 2.0  # s: a stage that takes longer is also reported in a pipe
 
 
 class Lasting(str):
-    """A line of progress that is told in a pipe, too."""
+    """A line of progress that is also printed in a pipe."""
 
     __slots__ = ()
 
 
 @contextmanager
 def stage(name: str, progress: Progress, seconds: float = math.inf) -> Iterator[None]:
-    """Tell that a stage runs and, where it was long, when it ends; with its budget in seconds where it has one."""
+    """Report that a stage starts, with its budget [s] if it has one, and the time that it took if that was long."""
     start = f"{name}: at most {seconds:g} s" if seconds < math.inf else f"{name} runs"
     progress(start)
     waiting = threading.Timer(LONG, progress, [Lasting(start)])

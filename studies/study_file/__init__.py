@@ -1,4 +1,4 @@
-"""The study file: its tables, their units, and the lines on which its keys stand."""
+"""The study file: its tables, their units, and the lines of its keys."""
 
 from studies.study_file.at_key import refused_field, told_at_key, travelled
 from studies.study_file.conversion import LARGEST, Conversion, Finding

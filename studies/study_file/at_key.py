@@ -1,4 +1,4 @@
-"""Errors of what a study asks to be computed, told at the key of its file that asks for it."""
+"""Reports an error of a computation at the key of the study file that asked for it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _OF_THE_LIMITS = (LimitsExceeded, TimingFailed)
 
 
 class StudyFailed(LinkwrightError):
-    """What a study asks for cannot be computed: `cause` says why, and its exit status stays."""
+    """What a study asks for cannot be computed. `cause` says why and gives the exit status."""
 
     def __init__(self, file: TomlFile, path: KeyPath, cause: LinkwrightError) -> None:
         self.file, self.key, self.cause = file.path, dotted(path), cause
@@ -32,11 +32,11 @@ class StudyFailed(LinkwrightError):
 
 @contextmanager
 def told_at_key(file: TomlFile) -> Iterator[None]:
-    """Raise the errors of paths, timing, limits and drives again, with their place in the study file.
+    """Raise the errors of paths, timing, limits and drives again, with their key and line in the study file.
 
     Raises:
-        StudyError: a value of the file that a field of a record refuses.
-        StudyFailed: a path or limits that do not go with the rest.
+        StudyError: a record refuses a value of the file.
+        StudyFailed: a path or limits do not fit the rest of the study.
     """
     try:
         yield
@@ -56,9 +56,9 @@ def told_at_key(file: TomlFile) -> Iterator[None]:
 
 
 def refused_field(file: TomlFile, error: InvalidField, why: str = "") -> Fault | None:
-    """What a record's field refuses, at its key; None where the error is of no record that a study fills.
+    """The fault at the key of a refused field; None if a study does not fill that record.
 
-    `why` stands behind what was found.
+    `why` is added to what was found.
     """
     if error.record not in _RECORDS:
         return None
@@ -71,18 +71,18 @@ def refused_field(file: TomlFile, error: InvalidField, why: str = "") -> Fault |
 
 
 def _spelling(file: TomlFile, path: KeyPath) -> KeyPath:
-    """The key as the file has it, with a suffix of a unit if that is so."""
+    """The key as the file spells it, perhaps with the suffix of a unit."""
     suffixed: list[KeyPath] = [(*path[:-1], f"{path[-1]}_{suffix}") for suffix in SUFFIX.values()]
     return next((key for key in (path, *suffixed) if key in file.lines), path)
 
 
 def _of_home(file: TomlFile, error: HomeOutOfReach) -> StudyError:
     given = next((path for path in file.lines if path[0] == "home"), None)
-    found = spelled(file.value(given)) if given else f"none, so the default {error.shown}"
+    found = spelled(file.value(given)) if given else f"no home, so the default {error.shown}"
     return StudyError([file.fault(given or ("home",), found, f"a home in reach ({error.cause})")])
 
 
 def travelled(file: TomlFile) -> KeyPath:
-    """The key of what is travelled; the region's where there is no such key."""
+    """The key of the cycle or path; the region's if there is neither."""
     known: list[KeyPath] = [("trajectory", name) for name in ("cycle", "path")]
     return next((key for key in known if key in file.lines), ("region",))

@@ -1,4 +1,4 @@
-"""The table `[trajectory.limits]`: its keys are the fields of all limits that there are, in the words of these."""
+"""The table `[trajectory.limits]`. Its keys and their words are those of the fields of all limits."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ def _holds(field: LimitField) -> tuple[Any, Any]:
 
 
 def _whole(limit: Limit) -> Callable[..., Any]:
-    """Checks that the fields of a limit are set all together."""
+    """A check that the fields of a limit are set together."""
     first, *others = (field.name for field in limit.fields)
 
     def check(cls: type, value: Any, info: ValidationInfo) -> Any:  # noqa: ARG001
         if first in info.data and (info.data[first] is None) != (value is None):
-            raise ValueError("half of a limit")
+            raise ValueError("a field of the limit is missing")
         return value
 
     return field_validator(*others)(check)
@@ -54,7 +54,7 @@ else:
         "LimitsTable",
         __base__=StudyTable,
         __module__=__name__,
-        __doc__="What each joint can do: a number for all joints, or one a joint; None is no limit.",
+        __doc__="The limits of each joint: a number for all joints, or one for each joint; None is no limit.",
         __validators__={f"whole_{limit.fields[0].name}": _whole(limit) for limit in LIMITS if len(limit.fields) > 1},
         **{field.name: _holds(_DECLARED[field.name]) for field in fields(Limits)},
     )

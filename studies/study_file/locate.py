@@ -1,4 +1,4 @@
-"""Where the studies are."""
+"""Find a study file by name or path."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ FILE = "study.toml"
 
 
 class UnknownStudy(LinkwrightError):
-    """Neither a study's name nor a path to one."""
+    """The argument is neither a study's name nor a path to a study."""
 
     def __init__(self, found: str, known: list[str]) -> None:
         self.found, self.known = found, known
-        near = difflib.get_close_matches(found[:64], known, n=1)  # longer ones are no slip of the pen
+        near = difflib.get_close_matches(found[:64], known, n=1)  # a longer word is not a misspelt name
         hint = f" (did you mean {near[0]}?)" if near else ""
         what = f", a folder without {FILE}" if found and _is(Path.is_dir, Path(found)) else ""
         super().__init__(
@@ -35,7 +35,7 @@ def study_path(given: str) -> Path:
     """The study file that a name, a folder or a path means.
 
     Raises:
-        UnknownStudy: none of these.
+        UnknownStudy: there is no such study.
     """
     if given in study_names():
         return FOLDER / given / FILE
@@ -48,7 +48,7 @@ def study_path(given: str) -> Path:
 
 
 def _is(kind: Callable[[Path], bool], path: Path) -> bool:
-    """Whether a path is of a kind; a name that the system does not take, such as one too long, is of none."""
+    """Whether a path is of a kind. A name that the system does not accept, such as one too long, is of none."""
     try:
         return kind(path)
     except (OSError, ValueError):

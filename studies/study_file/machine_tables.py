@@ -1,4 +1,4 @@
-"""The machine beside its geometry: masses, drives, joint ranges; what is left out is the mechanism's own."""
+"""The machine's masses, drives and joint ranges. A key that is left out takes the mechanism's own value."""
 
 from typing import Annotated, Any
 
@@ -9,11 +9,11 @@ from studies.study_file.table import StudyTable, gathered, table_of
 
 Numbers = float | tuple[float, ...]
 Ranges = dict[str, Numbers | tuple[tuple[float, float], ...]]
-"""By the fields of the mechanism's `Ranges` [m or rad]."""
+"""Values by the fields of the mechanism's `Ranges` [m or rad]."""
 
 
 class DriveTrainTable(StudyTable):
-    """What stands behind each actuator, as in `kinematics.DriveTrain`; None for its default."""
+    """The gear, motor and friction of each actuator, as in `kinematics.DriveTrain`; None takes its default."""
 
     gear_ratio: Annotated[
         Numbers | None, Key("a number > 0, or one a joint (rad of the motor for one rad, or one m, of the joint)")
@@ -24,7 +24,7 @@ class DriveTrainTable(StudyTable):
     coulomb: Annotated[Numbers | None, Key("a number >= 0, or one a joint (N m, or N)")] = None
     """The dry friction at the joint."""
     viscous: Annotated[Numbers | None, Key("a number >= 0, or one a joint (N m s/rad, or N s/m)")] = None
-    """The friction for each unit of speed, at the joint. The law `toppra` refuses it."""
+    """The friction at the joint for each unit of speed. The law `toppra` does not allow it."""
 
 
 class InertiaTable(StudyTable):
@@ -33,7 +33,7 @@ class InertiaTable(StudyTable):
     masses: dict[str, Numbers] = Field(default_factory=dict)
     """The fields of the mechanism's `Inertia` [SI]."""
     drive_train: Annotated[DriveTrainTable, table_of(DriveTrainTable)] = DriveTrainTable()
-    """The gear, motor and friction behind each actuator."""
+    """The gear, motor and friction of each actuator."""
 
     @model_validator(mode="before")
     @classmethod

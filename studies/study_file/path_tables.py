@@ -1,4 +1,4 @@
-"""What a study's tool travels: a pick-and-place cycle, or a path through waypoints."""
+"""The path of a study's tool: a pick-and-place cycle, or a path through waypoints."""
 
 from collections.abc import Mapping
 from typing import Annotated, Any
@@ -18,34 +18,34 @@ _NOT_OF_THE_PATH = ("size", "place", "payload", "payload_back")
 class CycleTable(StudyTable):
     """The pick-and-place cycle: up by `lift`, across by `span`, down by `place_lift`, and back [m, rad, kg].
 
-    A `size` stands for the three, a `place` for `span`, `heading` and `rise`.
+    A `size` replaces lift, span and place lift. A `place` replaces `span`, `heading` and `rise`.
     """
 
     pick: Annotated[tuple[float, float, float], Key("three lengths x, y, z", LENGTH, place=True)]
     """Where the cycle starts."""
     size: Annotated[Annotated[str, one_of(STANDARD_SIZES)] | None, Key("one of", choices=tuple(STANDARD_SIZES))] = None
-    """Lift, span and place lift at once [mm]. It says nothing about the corners, so it needs a blend beside it."""
+    """Lift, span and place lift at once [mm]. The corners are not part of it: give a blend too."""
     place: Annotated[
         tuple[float, float, float] | None,
-        Key("three lengths x, y, z, not above the pick; no size beside it", LENGTH, place=True),
+        Key("three lengths x, y, z, not straight above or below the pick; not with a size", LENGTH, place=True),
     ] = None
     """The pose where the half cycle ends. It replaces span, heading and rise."""
-    lift: Annotated[
-        Positive | None, Field(validate_default=True), Key("a length > 0, or a size instead of it", LENGTH)
-    ] = None
+    lift: Annotated[Positive | None, Field(validate_default=True), Key("a length > 0; or a size instead", LENGTH)] = (
+        None
+    )
     """The height of the vertical leg above the pick."""
     span: Annotated[
-        Positive | None, Field(validate_default=True), Key("a length > 0, or a size or a place instead of it", LENGTH)
+        Positive | None, Field(validate_default=True), Key("a length > 0; or a size or a place instead", LENGTH)
     ] = None
     """The horizontal distance from pick to place."""
-    place_lift: Annotated[Positive | None, Key("a length > 0; no size beside it", LENGTH)] = None
+    place_lift: Annotated[Positive | None, Key("a length > 0; not with a size", LENGTH)] = None
     """The height of the vertical leg above the place. None takes the lift."""
-    rise: Annotated[float, Key("a length, how much higher the place is; no place beside it", LENGTH, place=True)] = 0.0
-    """The height of the place above the pick."""
-    heading: Annotated[float, Key("an angle; no place beside it", ANGLE)] = 0.0
+    rise: Annotated[float, Key("a length; not with a place", LENGTH, place=True)] = 0.0
+    """The height of the place above the pick. Below the pick it is negative."""
+    heading: Annotated[float, Key("an angle; not with a place", ANGLE)] = 0.0
     """The direction of the span: its angle about z, from x."""
     blend: Annotated[
-        Positive, Key("a length > 0, at most the lift and at most half the span; needed beside a size, too", LENGTH)
+        Positive, Key("a length > 0, at most the lift and at most half the span; also needed with a size", LENGTH)
     ]
     """The length that a rounded corner takes off each of its legs."""
     turn: Annotated[float, Key("an angle", ANGLE)] = 0.0
@@ -53,8 +53,8 @@ class CycleTable(StudyTable):
     start_angle: Annotated[float, Key("an angle", ANGLE)] = 0.0
     """Theta, or yaw, at the pick."""
     tilt: Annotated[tuple[float, float], Key("two angles, roll and pitch at the place", ANGLE)] = (0.0, 0.0)
-    """Roll and pitch at the place; the platform is level at the pick. Only where the pose has roll and pitch."""
-    payload: Annotated[float, Field(ge=0), Key("a mass >= 0 (kg); payload_back for another one on the way back")]
+    """Roll and pitch at the place; both are 0 at the pick. Only for a pose with roll and pitch."""
+    payload: Annotated[float, Field(ge=0), Key("a mass >= 0 (kg); payload_back may give another for the way back")]
     """The mass at the tool."""
     payload_back: Annotated[float | None, Field(ge=0), Key("a mass >= 0 (kg)")] = None
     """The mass at the tool on the way back. None takes the same."""
@@ -67,21 +67,21 @@ class CycleTable(StudyTable):
         if len(stated) > 1 or (not stated and info.field_name in ("lift", "span")):
             raise ValueError("given twice, or not at all")
         if info.field_name == "place" and value is not None and value[:2] == info.data.get("pick", ())[:2]:
-            raise ValueError("above the pick")
+            raise ValueError("straight above or below the pick")
         return value
 
     @field_validator("rise", "heading")
     @classmethod
     def _not_with_place(cls, value: float, info: ValidationInfo) -> float:
         if value != 0.0 and info.data.get("place") is not None:
-            raise ValueError("the place says it")
+            raise ValueError("the place gives it")
         return value
 
     @field_validator("blend")
     @classmethod
     def _blend_fits(cls, blend: float, info: ValidationInfo) -> float:
         if not {"size", "place", "lift", "span", "place_lift", "rise", "heading", "pick"} <= info.data.keys():
-            return blend  # what is wrong with those is told already
+            return blend  # the fault of lift or span is already reported
         try:
             adept_cycle({**info.data, "blend": blend})
         except InvalidValue as error:
@@ -90,7 +90,7 @@ class CycleTable(StudyTable):
 
 
 def adept_cycle(cycle: Mapping[str, Any], **others: Any) -> AdeptCycle:
-    """The path there, from the fields of a `Cycle`.
+    """The path of the way there, from the fields of a `CycleTable`.
 
     Raises:
         InvalidValue: the corners do not fit, or the pose has no such angles.
@@ -104,7 +104,7 @@ def adept_cycle(cycle: Mapping[str, Any], **others: Any) -> AdeptCycle:
 
 
 class WaypointTable(StudyTable):
-    """A pose, and the blend of the corner there. An angle that is left out follows from its neighbours."""
+    """A pose, and the blend of its corner. An angle that is left out follows from the waypoints before and after."""
 
     coordinates: dict[str, float]
     """The pose [m or rad]."""
@@ -120,9 +120,9 @@ class WaypointTable(StudyTable):
 class WaypointPathTable(StudyTable):
     """A path through waypoints, from a CSV file beside the study or from the study itself."""
 
-    file: Annotated[Name | None, Key("the name of a CSV file, or waypoints instead of it")] = None
+    file: Annotated[Name | None, Key("the name of a CSV file; or waypoints instead")] = None
     """The CSV file, beside the study."""
     waypoint: Annotated[tuple[WaypointTable, ...], table_of(WaypointTable, rows=True)] = ()
-    """The waypoints in order. With a file, those of the file."""
+    """The waypoints in order. With a file, they come from the file."""
     payload: Annotated[float, Field(ge=0), Key("a mass >= 0 (kg)")]
     """The mass at the tool, both ways."""

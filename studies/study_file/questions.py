@@ -1,8 +1,8 @@
 """The two questions of a study, each with a digest: which geometry is best, and how fast its cycle can be.
 
-A payload belongs to the cycle alone: no margin of a geometry depends on masses. What decides neither answer, such as
-the title, the budget or the formats of the drive files, belongs to no question; the claims to be proved are compared
-by themselves.
+A payload belongs only to the cycle: no margin of a geometry depends on masses. Keys that decide neither answer, such as
+the title, the budget or the formats of the drive files, belong to no question. The claims to be proved are compared
+separately.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ DESIGN = frozenset(
     ("mechanism", "code", "geometry", "ranges", "region", "home", "fvi", "optimise", "dense_sample", "requirement")
 )
 CYCLE = frozenset(("inertia", "trajectory"))
-_NO_MATTER = {"trajectory": {"files": True, "drive": True, "path": {"file": True}}}  # they only spell the rest
+_NO_MATTER = {"trajectory": {"files": True, "drive": True, "path": {"file": True}}}  # they do not change the motion
 _GATHERED = ("coordinates", "masses")  # fields of the models that no file has
-_FEW = 12  # waypoints that are told one by one
+_FEW = 12  # up to so many waypoints are written one by one
 
 Question = dict[
     str, Any
@@ -29,12 +29,12 @@ Question = dict[
 
 
 def design_question(study: Study) -> Question:
-    """All that decides the geometry and its figures, to 12 digits; defaults are left out."""
+    """All keys that decide the geometry and its figures, to 12 digits. Defaults are left out."""
     return _flat(study.model_dump(include=set(DESIGN), exclude_defaults=True, exclude_none=True))
 
 
 def cycle_question(study: Study) -> Question:
-    """All that decides the cycle of a given geometry; empty without a cycle."""
+    """All keys that decide the cycle of a given geometry; empty without a cycle."""
     if study.trajectory is None:
         return {}
     exclude: Any = _NO_MATTER
@@ -46,12 +46,12 @@ def cycle_question(study: Study) -> Question:
 
 
 def digest_of(question: Mapping[str, Any]) -> str:
-    """SHA-256 (hex)."""
+    """The SHA-256 of a question (hex)."""
     return hashlib.sha256(json.dumps(question, sort_keys=True).encode()).hexdigest()
 
 
 def changes(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, tuple[Any, Any]]:
-    """The keys whose values differ: before and after, None where there is none."""
+    """The keys whose values differ, each with its value before and after; None for a missing one."""
     keys = dict.fromkeys([*before, *after])
     return {key: (before.get(key), after.get(key)) for key in keys if before.get(key) != after.get(key)}
 
@@ -70,7 +70,7 @@ def _leaves(node: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def plain(value: Any) -> Any:
-    """Lists for tuples and twelve digits of each number, which forgive what converting a unit rounds off."""
+    """The data with lists for tuples and numbers of twelve digits, so that the rounding of a unit changes nothing."""
     match value:
         case float():
             return float(f"{value:.12g}") + 0.0  # no negative zero

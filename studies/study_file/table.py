@@ -1,4 +1,4 @@
-"""What every table of a study file shares: strict frozen models, the kinds of their values, the keys that they take."""
+"""The base of every table of a study file: a strict frozen model, kinds of values, and the keys of a table."""
 
 from collections.abc import Collection
 from typing import Annotated, Any
@@ -28,7 +28,7 @@ Name = Annotated[str, Field(min_length=1)]
 
 
 def one_of(choices: Collection[str]) -> AfterValidator:
-    """Checks that a word is among the choices."""
+    """A check that a word is one of the choices."""
 
     def check(word: str) -> str:
         if word not in choices:
@@ -39,7 +39,7 @@ def one_of(choices: Collection[str]) -> AfterValidator:
 
 
 class StudyTable(BaseModel):
-    """A table of the file: no key beside its fields, no number that is not finite, nothing converted."""
+    """A table of the file. It accepts only its fields, only finite numbers, and converts no type."""
 
     model_config = ConfigDict(
         frozen=True, extra="forbid", strict=True, allow_inf_nan=False, use_attribute_docstrings=True
@@ -47,7 +47,7 @@ class StudyTable(BaseModel):
 
 
 def table_of(model: type[BaseModel], rows: bool = False) -> Table:
-    """The keys that `model` takes from a file: its fields annotated with a Key or a Table."""
+    """The keys that `model` takes from a file: its fields with a Key or a Table in their annotation."""
     keys = {
         name: node
         for name, field in model.model_fields.items()
@@ -58,7 +58,7 @@ def table_of(model: type[BaseModel], rows: bool = False) -> Table:
 
 
 def gathered(model: type[BaseModel], data: Any, name: str = "coordinates") -> Any:
-    """`data` of a file with the keys that are not the model's own gathered in its field `name`."""
+    """The `data` of a file; keys that are not the model's own are moved into its field `name`."""
     if not isinstance(data, dict) or name in data:
         return data
     own = {key: value for key, value in data.items() if key in model.model_fields}

@@ -1,7 +1,7 @@
-"""Read a TOML file and know the line of each key.
+"""Read a TOML file and find the line of each key.
 
-`tomllib` decides what is valid and keeps no positions. A second, forgiving pass over the then valid text
-finds the lines; a key that it misses is given its table's line.
+`tomllib` decides what is valid, but it keeps no positions. A second, simple pass over the valid text finds the lines.
+A key that this pass misses gets the line of its table.
 """
 
 import re
@@ -34,7 +34,7 @@ class TomlFile:
     lines: Mapping[KeyPath, int]
 
     def value(self, path: KeyPath) -> object:
-        """The value at `path`; raises LookupError where there is none."""
+        """The value at `path`; raises LookupError if there is none."""
         node: object = self.data
         for part in path:
             match part, node:
@@ -47,7 +47,7 @@ class TomlFile:
         return node
 
     def line(self, path: KeyPath) -> int:
-        """The line (from 1) of `path`, or of its nearest enclosing table that the file has."""
+        """The line (from 1) of `path`, or of the nearest table around it that is in the file."""
         known = (self.lines[path[:n]] for n in range(len(path), 0, -1) if path[:n] in self.lines)
         return next(known, 1)
 
@@ -64,7 +64,7 @@ def read_toml(path: Path) -> TomlFile:
     text = _read_text(path)
     try:
         data = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # not only TOMLDecodeError: see a 5000-digit integer
+    except (ValueError, RecursionError) as error:  # a 5000-digit integer raises another ValueError
         raise StudyError([_syntax_fault(path, text, error)]) from None
     return TomlFile(path, data, key_lines(text))
 
@@ -72,7 +72,7 @@ def read_toml(path: Path) -> TomlFile:
 def _read_text(path: Path) -> str:
     try:
         if path.exists() and not path.is_file() and not path.is_dir():
-            raise OSError(0, "no file but a device or a pipe")  # reading it might never end
+            raise OSError(0, "a device or a pipe, not a file")  # reading it might never end
         raw = path.read_bytes()
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
@@ -135,8 +135,8 @@ class _Scan:
     rows: dict[KeyPath, int] = field(default_factory=dict)  # entries of each array of tables so far
     open: list[_Open] = field(default_factory=list)
     key: list[str] = field(default_factory=list)
-    value_path: KeyPath | None = None  # None while a key is read
-    header: int = 0  # how many brackets opened the header
+    value_path: KeyPath | None = None  # None while a key is being read
+    header: int = 0  # the number of brackets that opened the header
 
     def take(self, kind: str, token: str, line: int) -> None:
         mark = token if kind == "mark" else ""
@@ -205,7 +205,7 @@ class _Scan:
 
 
 def _unquoted(kind: str, token: str) -> str:
-    """The key that a token spells; a quoted one with a bad escape stays as it is, as the file is no TOML anyway."""
+    """The key that a token spells. A quoted key with a bad escape is kept as it is, as the file is not valid TOML."""
     if kind != "text":
         return token
     try:

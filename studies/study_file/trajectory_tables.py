@@ -1,4 +1,4 @@
-"""How a study's cycle is timed: limits, law, approach, and the files for the drives."""
+"""The table `[trajectory]`: limits, timing law, approach, and the files for the drives."""
 
 from typing import Annotated
 
@@ -16,7 +16,7 @@ Increments = Annotated[int, Field(gt=0)]
 
 
 class ApproachTable(StudyTable):
-    """What the joints may do on the jerk-limited move from home to the cycle's start."""
+    """The limits of the joints on the jerk-limited move from home to the cycle's start."""
 
     speed: Annotated[PerJoint, Key("a speed > 0, or one a joint", Dimension.JOINT_SPEED)]
     """The largest speed of the joints."""
@@ -27,37 +27,37 @@ class ApproachTable(StudyTable):
 
 
 class DriveTable(StudyTable):
-    """What the drive files need of the machine; a value for all axes, or one an axis."""
+    """The data of the machine that drive files need: a value for all axes, or one for each axis."""
 
     axes: Annotated[Annotated[tuple[Name, ...], Field(min_length=1)] | None, Key("a list of names, one a joint")] = None
-    """The names of the axes. None takes each format's own."""
+    """The names of the axes. None takes the names of each format."""
     increments: Annotated[
         Increments | Annotated[tuple[Increments, ...], Field(min_length=1)] | None,
-        Key("a whole number > 0, or one a joint (in a turn of the encoder, or in a metre on a rail)"),
+        Key("a whole number > 0, or one a joint (for one turn of the encoder, or one metre on a rail)"),
     ] = None
-    """The increments of the encoder. The format `cia402` needs them."""
+    """The number of increments of the encoder. The format `cia402` needs it."""
     encoder_gear: Annotated[
         float | Annotated[tuple[float, ...], Field(min_length=1)],
-        Key("a number other than 0, or one a joint (turns of the encoder for one of the joint)"),
+        Key("a number other than 0, or one a joint (turns of the encoder for one turn of the joint)"),
     ] = 1.0
-    """The gear between joint and encoder. It is negative where the encoder counts the other way."""
+    """The gear ratio between joint and encoder. It is negative if the encoder counts the other way."""
 
 
 class TrajectoryTable(StudyTable):
     """How the cycle is timed, and how its set-points are sampled."""
 
     law: Annotated[str, one_of(LAWS), Key("one of", choices=tuple(LAWS))] = "jerk"
-    """The timing law. `toppra` keeps no jerk limit; `free` finds the path too."""
+    """The timing law. `toppra` keeps no jerk limit. `free` also finds the path."""
     grid: Annotated[int, Field(ge=1000, le=1_000_000), Key("a whole number from 1000 to 1000000")] = 2000
-    """The number of points along the path at first. The law `toppra` adds those that it needs."""
+    """The number of points along the path at the start. The law `toppra` adds more if needed."""
     period: Annotated[Positive, Field(le=1.0), Key("a time > 0, at most 1 (s)")] = 0.001
     """The time between two set-points [s]."""
     cycle: Annotated[CycleTable | None, table_of(CycleTable)] = None
-    """The cycle to travel, if there is no path."""
+    """The cycle to time. Give either a cycle or a path."""
     path: Annotated[WaypointPathTable | None, Field(validate_default=True), table_of(WaypointPathTable)] = None
-    """The path to travel, if there is no cycle."""
+    """The path to time. Give either a cycle or a path."""
     limits: Annotated[LimitsTable, table_of(LimitsTable)]
-    """What the drives and the tool may do."""
+    """The limits of the drives and the tool."""
     approach: Annotated[ApproachTable | None, table_of(ApproachTable)] = None
     """The move from home to the start. None leaves it out."""
     files: Annotated[
@@ -66,7 +66,7 @@ class TrajectoryTable(StudyTable):
     ] = ("csv",)
     """The formats of the set-points' files."""
     drive: Annotated[DriveTable, table_of(DriveTable)] = DriveTable()
-    """What the drive files need of the machine."""
+    """The data of the machine that drive files need."""
 
     @field_validator("path")
     @classmethod
@@ -84,5 +84,5 @@ class TrajectoryTable(StudyTable):
 
     @property
     def payload_back(self) -> float | None:
-        """Mass on the way back [kg]; None for the same."""
+        """Mass at the tool on the way back [kg]; None for the same mass."""
         return self.cycle.payload_back if self.cycle else None

@@ -102,7 +102,7 @@ def test_the_free_law_is_given_the_region_and_a_motion_that_leaves_it_is_refused
 
     monkeypatch.setattr(trajectory.laws.free, "free_motion", law)
     with pytest.raises(
-        RequirementFailed, match=r"room to the region's boundary on the cycle \[m or rad\]: found -0\.4"
+        RequirementFailed, match=r"distance inside the region's boundary on the cycle \[m or rad\]: found -0\.4"
     ) as caught:
         time_cycle(study, robot)
     assert caught.value.exit_status == 1

@@ -91,7 +91,7 @@ def test_figures_that_still_move_are_printed_with_how_far(tmp_path: Path) -> Non
     done = linkwright("map", "redundant_3t1r", *corner, "--tolerance", 1e-12, "--seconds", 4, "--out", tmp_path)
     assert done.returncode == 1, done.stderr
     assert "not settled" in done.stdout
-    assert "still move by" in " ".join(done.stdout.split())
+    assert "changed the figures by" in " ".join(done.stdout.split())
     assert "area" in done.stdout
     assert len(list(tmp_path.glob("map_*"))) == 3
 
@@ -117,15 +117,15 @@ def test_other_bounds_and_units() -> None:
         ({"section": "y,q"}, "--section", "one of x, y, z, theta"),
         ({"section": "x,y"}, "--section", "vary"),
         ({"at": ("theta_mm=1",)}, "--at", r"theta\[_deg\]"),
-        ({"at": ("theta",)}, "--at", "name=value"),
+        ({"at": ("theta",)}, "--at", "NAME=VALUE"),
         ({"at": ("theta=up",)}, "--at", "numbers with ','"),
         ({"at": ("theta=inf",)}, "--at", "finite"),
         ({"at": ("theta=0", "theta_deg=10")}, "--at", "once"),
         ({"at": ("theta_deg=100",)}, "--at", "in the region"),
         ({"section": "y,z", "at": ("y=0",)}, "--at", "one of x, theta"),
-        ({"over": ("z=1",)}, "--over", "low:high"),
+        ({"over": ("z=1",)}, "--over", "LOW:HIGH"),
         ({"over": ("z=1:0",)}, "--over", "lower first"),
-        ({"over": ("radius=1",)}, "--over", "name=value"),
+        ({"over": ("radius=1",)}, "--over", "NAME=VALUE"),
         ({"at_least": math.nan}, "--at-least", "finite"),
     ],
 )
@@ -152,7 +152,9 @@ def test_what_cannot_be_proved_is_refused_before_anything_runs(asked: Any) -> No
 
 def test_where_no_node_keeps_the_bound_the_grid_s_step_is_said(capsys: pytest.CaptureFixture[str]) -> None:
     print_map(run_map(redundant(at=("theta=0",), at_least=99.0), 1e-3, False, lambda _: None), Written(), False)
-    assert "no node keeps the bound; they are 0.0012 m and 0.0012 m apart" in " ".join(capsys.readouterr().out.split())
+    assert "no node keeps the bound; the nodes are 0.0012 m and 0.0012 m apart" in " ".join(
+        capsys.readouterr().out.split()
+    )
 
 
 def test_a_bad_option_exits_with_2_and_writes_nothing(tmp_path: Path) -> None:

@@ -42,7 +42,7 @@ def test_a_run_that_was_stopped_goes_on_from_its_optimum_and_ends_as_one_that_wa
     with patch.object(pipeline, "synthesise", side_effect=AssertionError("optimised again")):
         ended = run(tmp_path)
     assert ended.returncode == 0, ended.stderr
-    assert "out/optimum.toml: taken up" in ended.stderr
+    assert "out/optimum.toml: used" in ended.stderr
     after_a_stop = (tmp_path / "out" / "optimum.toml").read_bytes()
     assert run(tmp_path, "--fresh").returncode == 0
     assert (tmp_path / "out" / "optimum.toml").read_bytes() == after_a_stop
@@ -75,7 +75,7 @@ def test_an_optimum_that_the_user_changed_is_neither_taken_up_nor_replaced(tmp_p
     file.write_text(changed := file.read_text() + "# mine\n")
     ended = run(tmp_path)
     assert ended.returncode == 2
-    assert f"{file}: found a file that is not as this program wrote it" in json.loads(ended.stdout)["error"]
+    assert f"{file}: found a file that this program did not write" in json.loads(ended.stdout)["error"]
     assert file.read_text() == changed
 
 

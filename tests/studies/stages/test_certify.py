@@ -197,7 +197,7 @@ def test_certify_proves_writes_and_exits_0(tmp_path: Path) -> None:
         (
             ("tolerance = 0.02", "most_boxes = 4"),
             ("--margin", "J_q", "--at-least", "0.8"),
-            r"J_q >= 0\.8 +undecided +4 .*boxes left, one around \(",
+            r"J_q >= 0\.8 +undecided +4 .*undecided boxes, one around \(",
         ),
         (("at_least = 0.4", "at_least = 0.99"), (), r"internal_determinant >= 0\.99 +refuted"),
     ],

@@ -145,32 +145,37 @@ def test_a_way_that_ends_where_it_starts_is_a_closed_cycle_and_no_half(tmp_path:
     [
         (CYCLE + 'size = "30/305/30"\n', HELI4, "cycle.size", "25/305/25, 25/300/25, 25/700/25"),
         (CYCLE + 'size = "25/305/25"\nlift_mm = 25\n', HELI4, "cycle.lift_mm", "or a size instead"),
-        (CYCLE + 'size = "25/305/25"\nplace = [0, 0, 0]\n', HELI4, "cycle.place", "no size beside it"),
+        (CYCLE + 'size = "25/305/25"\nplace = [0, 0, 0]\n', HELI4, "cycle.place", "not with a size"),
         (CYCLE + "span_mm = 100\n", HELI4, "cycle.lift", "a length > 0"),
         (
             CYCLE.replace("= 1.0", "= [1.0, 0.0]"),
             HELI4,
             "cycle.payload",
-            "payload_back for another one on the way back",
+            "payload_back may give another for the way back",
         ),
         (CYCLE + "lift_mm = 25\n", HELI4, "cycle.span", "a size or a place"),
-        (CYCLE + "lift_mm = 25\nspan = 0.1\nplace = [0, 0, -0.8]\n", HELI4, "cycle.span", "instead of it"),
-        (CYCLE + "lift_mm = 25\nplace = [-0.15, 0, -0.7]\n", HELI4, "cycle.place", "not above the pick"),
-        (CYCLE + "lift_mm = 25\nplace = [0, 0, -0.8]\nheading = 1\n", HELI4, "cycle.heading", "no place beside"),
+        (CYCLE + "lift_mm = 25\nspan = 0.1\nplace = [0, 0, -0.8]\n", HELI4, "cycle.span", "a size or a place instead"),
+        (
+            CYCLE + "lift_mm = 25\nplace = [-0.15, 0, -0.7]\n",
+            HELI4,
+            "cycle.place",
+            "not straight above or below the pick",
+        ),
+        (CYCLE + "lift_mm = 25\nplace = [0, 0, -0.8]\nheading = 1\n", HELI4, "cycle.heading", "not with a place"),
         (CYCLE + "lift_mm = 25\nspan_mm = 100\nplace_lift_mm = 19\n", HELI4, "cycle.blend_mm", "at most the lift"),
         (CYCLE + "lift_mm = 25\nspan_mm = 100\ntilt_deg = [1, 2]\n", HELI4, "cycle.tilt_deg", "one of"),
         (CYCLE + "lift_mm = 25\nspan_mm = 100\n", PLANAR, "trajectory.cycle", "one of"),
         ("", HELI4, "trajectory.path", "or [trajectory.cycle] in its place"),
         ("", PLANAR, "trajectory.path", "file, waypoint, payload"),
         (CYCLE + 'size = "25/305/25"\n' + ROWS, HELI4, "trajectory.path", "no such table beside [trajectory.cycle]"),
-        ("[trajectory.path]\npayload = 1.0\n", HELI4, "trajectory.path", "one of the two"),
+        ("[trajectory.path]\npayload = 1.0\n", HELI4, "trajectory.path", "either a file or waypoints"),
         (
             "[[trajectory.path.waypoint]]".join(ROWS.split("[[trajectory.path.waypoint]]")[:2]),
             HELI4,
             "path.waypoint",
             "two or more",
         ),
-        (ROWS.replace("payload", 'file = "a.csv"\npayload'), HELI4, "trajectory.path", "one of the two"),
+        (ROWS.replace("payload", 'file = "a.csv"\npayload'), HELI4, "trajectory.path", "either a file or waypoints"),
         (ROWS.replace("blend_mm = 30", "blend_mm = 101"), HELI4, "path.waypoint", "0.1 m"),
         (ROWS.replace("blend_mm = 30", "blend_mm = -1"), HELI4, "path.waypoint.blend_mm", "a length >= 0"),
         (ROWS.replace("y = 0.0\nz = -0.7\nblend", "z = -0.7\nblend"), HELI4, "path.waypoint", "a finite number"),
@@ -197,7 +202,9 @@ def test_what_the_geometry_as_a_whole_refuses_is_told_at_its_key(tmp_path: Path)
         load_study(read_toml(tmp_path / "study.toml"))
 
 
-@pytest.mark.parametrize(("name", "found"), [("none.csv", "no such file"), ("study.toml", "no CSV file")])
+@pytest.mark.parametrize(
+    ("name", "found"), [("none.csv", "which does not exist"), ("study.toml", "which is no CSV file")]
+)
 def test_a_file_of_waypoints_that_cannot_be_is_told_at_its_key(tmp_path: Path, name: str, found: str) -> None:
     with pytest.raises(StudyError, match=rf'trajectory\.path\.file: found "{name}", {found}; expected a \.csv file'):
         load_study(read_toml(written(tmp_path, f'[trajectory.path]\nfile = "{name}"\npayload = 1.0\n')))
