@@ -17,8 +17,8 @@ from kinematics.errors import InvalidValue
 from kinematics.evaluation.block_graph import Block
 from kinematics.evaluation.block_program import BlockProgram
 from kinematics.evaluation.program import Op, Program
-from kinematics.evaluation.sine_cosine import LIMIT, sine
 from kinematics.evaluation.threads import over_spans
+from kinematics.evaluation.vector_sine import LIMIT, sine
 
 LINE = 8  # doubles in a cache line
 BLOCK = 64  # poses: 64 work rows fill the usual 32 KB of first cache

@@ -19,6 +19,7 @@ import numba
 import numpy as np
 
 from kinematics.errors import InvalidValue
+from kinematics.evaluation.interval_trigonometry import arctangent, cosine
 from kinematics.evaluation.program import Op
 from kinematics.evaluation.threads import over_spans
 
@@ -29,7 +30,6 @@ BLOCK = 128
 _EPS = 2.0**-52  # one unit in the last place, at least: twice what a correctly rounded operation is off by
 _TINY = 5e-324
 _MAX = 1.7976931348623157e308
-_LIBRARY = 2.0**-50  # what sine, cosine and arctangent may be off by, relative to 1
 
 (CONST, INPUT, OUTPUT, ASSIGN, ADD, SUB, MUL, DIV, NEG, SQRT, SQ, TWICE, INV, SIN, COS, ATAN2, FABS, FMIN, FMAX) = (
     int(Op(k)) for k in range(19)
@@ -183,11 +183,11 @@ def _rare(code, a, b, c, d):  # type: ignore[no-untyped-def]
     if code == NOT:
         return 1.0 if a == b == 0.0 else 0.0, 1.0 if a <= 0.0 <= b else 0.0
     if code == SIN:
-        return (0.0, 0.0) if a == b == 0.0 else _cosine(a - 0.5 * np.pi, b - 0.5 * np.pi)
+        return (0.0, 0.0) if a == b == 0.0 else cosine(a - 0.5 * np.pi, b - 0.5 * np.pi)
     if code == COS:
-        return (1.0, 1.0) if a == b == 0.0 else _cosine(a, b)
+        return (1.0, 1.0) if a == b == 0.0 else cosine(a, b)
     if code == ATAN2:
-        return _arctangent(a, b, c, d)
+        return arctangent(a, b, c, d)
     return -np.inf, np.inf
 
 
@@ -212,35 +212,3 @@ def _quotient(a, b, c, d):  # type: ignore[no-untyped-def]
     if total - total != 0.0:
         return -np.inf, np.inf
     return _out(min(min(p, q), min(u, v)), max(max(p, q), max(u, v)), _TINY)
-
-
-@numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
-def _cosine(a, b):  # type: ignore[no-untyped-def]
-    """Extremes at the ends and where the box holds a multiple of pi, by a count that allows for its own rounding.
-
-    `slack` covers the library's error, the rounding of a shift by pi / 2, and of pi itself, all relative to the angle.
-    """
-    slack = _LIBRARY * (1.0 + max(abs(a), abs(b)))
-    if not b - a < 6.0 or max(abs(a), abs(b)) > 1e9:
-        return -1.0, 1.0
-    low, high = min(np.cos(a), np.cos(b)) - 2.0 * slack, max(np.cos(a), np.cos(b)) + 2.0 * slack
-    first, last = np.ceil((a - slack) / np.pi - 1e-12), np.floor((b + slack) / np.pi + 1e-12)
-    if first <= last:
-        if first < last or first % 2.0 == 0.0:
-            high = 1.0
-        if first < last or first % 2.0 != 0.0:
-            low = -1.0
-    return max(low, -1.0), min(high, 1.0)
-
-
-@numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
-def _arctangent(a, b, c, d):  # type: ignore[no-untyped-def]
-    """atan2 of y in [a, b], x in [c, d]: extremes at the corners unless the box meets the cut or the origin.
-
-    There it jumps, and bounds would let a slope speak for both sides.
-    """
-    if c <= 0.0 and a <= 0.0 <= b:
-        return -np.inf, np.inf
-    p, q, u, v = np.arctan2(a, c), np.arctan2(a, d), np.arctan2(b, c), np.arctan2(b, d)
-    low, high = min(min(p, q), min(u, v)), max(max(p, q), max(u, v))
-    return low - _LIBRARY * 4.0, high + _LIBRARY * 4.0

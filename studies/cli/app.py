@@ -90,6 +90,7 @@ def certify(
     linkwright certify gough_stewart --margin joint_travel --at-least 0.02
     """
     from studies.cli import console
+    from studies.cli.proof_console import print_proofs
     from studies.results import Written, claim_file, write_proofs
     from studies.stages import prove_claims, question_of
 
@@ -100,7 +101,7 @@ def certify(
     with console.progress() as tell:
         proofs = prove_claims(question, claims, {}, {}, tell)
     written = write_proofs(question, proofs, folder) if folder else Written()
-    console.print_proofs(question, proofs, written, json)
+    print_proofs(question, proofs, written, json)
     if not all(proof.certificate.status == "proved" for proof in proofs):
         raise typer.Exit(1)
 
@@ -128,6 +129,7 @@ def trajectory(
     """
     from kinematics import InvalidValue
     from studies.cli import console
+    from studies.cli.run_console import print_timing
     from studies.results import Written, write_setpoints
     from studies.stages import require_on_cycle, stage, time_cycle
     from studies.study_file import told_at_key
@@ -152,7 +154,7 @@ def trajectory(
     with told_at_key(file), console.progress() as tell, stage("cycle", tell):
         timing = time_cycle(asked, robot)
     require_on_cycle(asked, timing.cycle)
-    console.print_timing(timing, write_setpoints(timing, asked, folder) if folder else Written(), json)
+    print_timing(timing, write_setpoints(timing, asked, folder) if folder else Written(), json)
 
 
 @app.command()
@@ -170,6 +172,7 @@ def report(
     linkwright report heli4 --out results
     """
     from studies.cli import console
+    from studies.cli.run_console import print_outcome
     from studies.committed import committed_certificates
     from studies.results import report_names, write_report
     from studies.stages import certified, run
@@ -182,7 +185,7 @@ def report(
     known = committed_certificates(asked, file.path.parent, robot)
     with told_at_key(file), console.progress() as tell:
         outcome = certified(run(asked, robot, tell), known, tell)
-    console.print_outcome(outcome, write_report(outcome, folder, f"linkwright report {study}"), json)
+    print_outcome(outcome, write_report(outcome, folder, f"linkwright report {study}"), json)
 
 
 @app.command()
@@ -238,6 +241,7 @@ def check(
     linkwright check heli4 my_robot/study.toml --json
     """
     from studies.cli import console
+    from studies.cli.proof_console import print_checks
     from studies.committed import FILE, check_study
     from studies.study_file import FOLDER, read_toml, study_names, study_path
 
@@ -247,7 +251,7 @@ def check(
         for name in names:
             tell(f"check {name}")
             found[name] = check_study(read_toml(study_path(name)), allow_code)
-    console.print_checks(found, json, verbose)
+    print_checks(found, json, verbose)
     if not all(row.holds for rows in found.values() for row in rows):
         raise typer.Exit(1)
 

@@ -37,6 +37,7 @@ def run(
     linkwright run my_robot/study.toml --commit
     """
     from studies.cli import console
+    from studies.cli.run_console import print_outcome
     from studies.results import optimum_names, run_into, run_names, write_run
     from studies.study_file import told_at_key
 
@@ -46,7 +47,7 @@ def run(
     beside = output_folder(file.path.parent, optimum_names(asked), force) if commit else None
     with told_at_key(file), console.progress() as tell:
         outcome = run_into(folder, asked, fresh, tell)
-    console.print_outcome(outcome, write_run(outcome, folder, f"linkwright run {study}", beside), json)
+    print_outcome(outcome, write_run(outcome, folder, f"linkwright run {study}", beside), json)
 
 
 def optimise(
@@ -58,6 +59,7 @@ def optimise(
     """
     from kinematics import InvalidValue
     from studies.cli import console
+    from studies.cli.run_console import print_outcome
     from studies.results import Written
     from studies.stages import designed
     from studies.study_file import told_at_key
@@ -68,4 +70,4 @@ def optimise(
         raise InvalidValue(f"study {asked.name}", "no [optimise] table", "an [optimise] table with variables")
     with told_at_key(file), console.progress() as tell:
         outcome = designed(asked, None, tell)
-    console.print_outcome(outcome, Written(), json)
+    print_outcome(outcome, Written(), json)

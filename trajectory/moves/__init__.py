@@ -1,6 +1,6 @@
 """Jerk-limited moves and stops off the path."""
 
-from trajectory.moves.moves import Move, plan_move, plan_stop
+from trajectory.moves.approach_and_stop import Move, plan_move, plan_stop
 
 __all__ = [
     "Move",

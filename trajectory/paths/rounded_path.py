@@ -18,7 +18,7 @@ from trajectory.errors import InvalidPath
 from trajectory.paths.angles import Angle
 from trajectory.paths.corner import QUINTIC_MOST, quintic, tangent_program, turned
 from trajectory.paths.knots import interval_of
-from trajectory.paths.legs import Layout, laid_out, turning_in_place
+from trajectory.paths.legs_and_blends import Layout, laid_out, turning_in_place
 from trajectory.paths.path import PathBox, checked_arc_length, places
 
 _SLACK = 1e-12  # relative: far more than what evaluation in double arithmetic is off by

@@ -13,7 +13,7 @@ from kinematics import GoughStewart, Heli4, Peppermill, Redundant3T1R
 from kinematics.evaluation.block_graph import Block
 from kinematics.evaluation.block_interpreter import bulk, evaluate
 from kinematics.evaluation.program import Op, Program, run_through
-from kinematics.evaluation.sine_cosine import LIMIT
+from kinematics.evaluation.vector_sine import LIMIT
 from kinematics.mathematics.symbolic_linear_algebra import adjugate, determinant
 
 X, Y, Z, U = (ca.SX.sym(name) for name in "xyzu")
