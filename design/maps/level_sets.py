@@ -43,7 +43,7 @@ class Integrals:
     deviation: float
 
     def moved(self, other: Integrals, whole: float) -> float:
-        """The largest relative change of a figure: of the area over the whole plane, of others over the larger value."""
+        """The largest relative change of a figure: the area over the whole plane, others over the larger value."""
         if math.isnan(self.mean) or math.isnan(other.mean):
             return 0.0 if self.area == other.area else math.inf  # both empty, or one of them
         level = max(abs(self.mean), self.deviation) or 1.0

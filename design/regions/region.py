@@ -132,7 +132,7 @@ class Region(ABC):
         return np.concatenate(list(self.walk(names, counts)))
 
     def walk(self, names: Sequence[str], counts: Sequence[int], chunk: int = CHUNK) -> Iterator[Array]:
-        """The poses of `grid` in its order, (k, n) with k <= chunk at a time, so that memory never holds all of them."""
+        """The poses of `grid` in its order, (k, n) with k <= chunk at a time; memory never holds all of them."""
         return (self.from_unit(unit, names) for unit in unit_grid(counts, chunk))
 
     def spread(self, names: Sequence[str]) -> Array:
