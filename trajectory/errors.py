@@ -95,7 +95,7 @@ class PathBeyondLimit(LinkwrightError):
         self.found, self.allowed = found, allowed
         self.pose, self.waypoint = tuple(float(v) for v in pose), waypoint
         what = (
-            f"the weight alone, at rest, needs of {joint} a torque of" if of_torque else f"the position of {joint} is"
+            f"holding the weight at rest needs a torque at {joint} of" if of_torque else f"the position of {joint} is"
         )
         super().__init__(
             f"{_place(at, self.pose, waypoint)}: {what} {found:.6g} {unit}; "

@@ -1,4 +1,4 @@
-"""A motion whose time is stretched until its limits are kept: what each sample of it allows."""
+"""The stretch of time that each sample of a motion needs to keep a limit."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ class Sampled:
     """A motion at samples that cover it.
 
     Attributes:
-        robot: of the motion.
+        robot: the robot that moves.
         tool: (k, j, n) the pose and its time derivatives.
         payload: mass at the tool [kg].
-        mean: of values (k, j, ...) at the samples, over the time.
+        mean: function that gives the mean over time of values (k, j, ...) at the samples.
     """
 
     robot: Mechanism
@@ -34,7 +34,7 @@ class Sampled:
 
     @cached_property
     def torque(self) -> ByRate:
-        """By the rate at which the same way is travelled."""
+        """The torque as a function of the rate of the same motion."""
         return torque_by_rate(self.robot, self.payload, self.tool.pose, self.tool.velocity, self.tool.acceleration)
 
     @cached_property
