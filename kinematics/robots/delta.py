@@ -80,7 +80,7 @@ class Delta(RotaryLimbs):
 
     @property
     def characteristic_length(self) -> float:
-        """1 m, and without effect: a translation has no rotation to be made a length."""
+        """1 m, without effect, as the plate does not rotate."""
         return 1.0
 
     @staticmethod

@@ -2,7 +2,7 @@
 
 A column has the name of its coordinate, in m or rad, or this name with `_mm` or `_deg`. A column `blend` (or
 `blend_mm`) is the length that the corner at that pose takes off both of its legs. With 0, or an empty cell, the tool
-stops there. An angle may be empty, except in the first and the last pose. Lines that are empty or start with # are ignored.
+stops there. An angle may be empty, except in the first and the last pose. Empty lines and lines with # are ignored.
 """
 
 from __future__ import annotations

@@ -186,7 +186,7 @@ def _between(cycle: Cycle, counts: Sequence[int], setpoints: Setpoints) -> dict[
 
 
 def robot_header(robot: Mechanism, limits: Limits) -> dict[str, Any]:
-    """The header's data about the robot: plain data, with lists instead of tuples, so that it is equal when read back."""
+    """The header's data about the robot: plain data, with lists for tuples, so that it is equal when read back."""
     header: dict[str, Any] = {
         "units of this header": "SI and radians unless a name says so",
         "made by": f"linkwright {version('linkwright')}",

@@ -370,6 +370,7 @@ def test_a_geometry_that_its_mechanism_refuses_is_no_optimum_and_named() -> None
     )
     region = Box(x=0.0, y=(-0.1, 0.1), z=(-0.1, 0.1), theta=0.0)
     with pytest.raises(
-        SynthesisFailed, match=r"none of 200 random choices within the bounds is a possible geometry; the last: .*outer_rail_z"
+        SynthesisFailed,
+        match=r"none of 200 random choices within the bounds is a possible geometry; the last: .*outer_rail_z",
     ):
         synthesise(asked, region, starts=1, about=5_000)

@@ -51,7 +51,9 @@ STEEP = RoundedPath(
 
 @pytest.mark.parametrize("law", LAWS)
 def test_where_the_weight_blocks_the_way_pose_waypoint_joint_and_torque_are_named(robot: Heli4, law: Law) -> None:
-    with pytest.raises(PathBeyondLimit, match="nearest to waypoint 2: holding the weight at rest needs a torque at q1") as caught:
+    with pytest.raises(
+        PathBeyondLimit, match="nearest to waypoint 2: holding the weight at rest needs a torque at q1"
+    ) as caught:
         law(robot, STEEP, limits(law, torque=6.351), 1.0)
     assert (caught.value.waypoint, caught.value.joint, caught.value.limit) == (2, "q1", "torque")
     pose, rest = np.array(caught.value.pose), np.zeros(4)

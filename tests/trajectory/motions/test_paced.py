@@ -88,7 +88,7 @@ def test_a_pace_that_hides_a_knot_of_the_motion_is_refused() -> None:
 @pytest.mark.parametrize("tau", [[-0.1, 0.2], [0.8, 1.1]])
 def test_a_pace_that_leaves_the_motion_is_refused(tau: list[float]) -> None:
     motion = spline(np.array([0.0, 1.0]), ALONG_X[None])
-    with pytest.raises(InvalidValue, match=r"rising ones in \[0, 1\] s"):
+    with pytest.raises(InvalidValue, match=r"rising knots in \[0, 1\] s"):
         PacedMotion(motion, TimeLaw.constant_acceleration("beyond", np.array(tau), np.array([1.0, 0.0])))
 
 

@@ -47,7 +47,7 @@ def stretch_of_sum(name: str, torque: ByRate, limit: Array, slope: Array | float
     """The least factor f of time with |torque| + slope / f <= limit at each sample, the torque that at r = 1 / f.
 
     Raises:
-        LimitsExceeded: what the torque keeps at rest is beyond the limit already.
+        LimitsExceeded: the torque at rest is already above the limit.
     """
     sign = np.sign(sum(torque))
     rest = limit - sign * torque.constant
@@ -64,7 +64,7 @@ def stretch_of_mean_square(name: str, torque: ByRate, limit: float, mean: Callab
     """The least factor of time with which the mean square of one drive's torque (k, j), a quartic in r, keeps a limit.
 
     Raises:
-        LimitsExceeded: what the torque keeps at rest is beyond the limit already.
+        LimitsExceeded: the torque at rest is already above the limit.
     """
     c, b, a = (x[..., None] for x in torque)
     quartic = mean(np.concatenate([a * a, 2 * a * b, b * b + 2 * a * c, 2 * b * c, c * c], axis=-1))
