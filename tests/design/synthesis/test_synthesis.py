@@ -138,7 +138,7 @@ def test_the_characteristic_length_stays_the_prototypes_while_the_pitch_varies()
 
 def test_a_region_that_no_geometry_reaches_is_told_with_limb_and_margin() -> None:
     below = Cylinder(radius=0.5, z=(-2.0, -1.9), theta=0.0)
-    with pytest.raises(SynthesisFailed, match=r"none of 200 geometries.*limb \d.*reach margin is -"):
+    with pytest.raises(SynthesisFailed, match=r"none of 200 geometries.*limb \d.*reach margin of -"):
         synthesise(problem(("arm_length", 0.25, 0.5)), below, starts=1, about=ABOUT)
 
 

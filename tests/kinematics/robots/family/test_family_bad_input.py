@@ -138,7 +138,7 @@ def test_equal_azimuths_of_one_half_are_refused_and_of_two_halves_are_not(kind):
 
 def test_equal_azimuths_of_a_delta_are_refused():
     for azimuths in [(0.5, 0.5 + ROUNDING, 3.0), (0.5, 3.0, 0.5 + 2 * np.pi)]:
-        refused(Delta, "azimuths", "no two the same", azimuths=azimuths)
+        refused(Delta, "azimuths", "three different directions", azimuths=azimuths)
 
 
 @pytest.mark.filterwarnings("error")
