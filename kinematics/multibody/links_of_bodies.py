@@ -145,7 +145,7 @@ def _check(robot: Mechanism, model: Model, tree: Tree, points: dict[str, list[ca
         off = np.abs(says - moves) > _SAME * np.abs(says).max()
         for k, link in enumerate(tree.links):
             if off[ends[k] : ends[k + 1]].any():
-                raise _unclear(robot, f"{link.name}, which moves otherwise")
+                raise _unclear(robot, f"{link.name}, which moves in another way")
 
 
 def _velocity(joint: TreeJoint | None, point: ca.SX) -> ca.SX:
@@ -165,5 +165,5 @@ def _states(robot: Mechanism) -> list[Array]:
 
 
 def _unclear(robot: Mechanism, found: str) -> InvalidValue:
-    expected = "links that one joint or the pose alone moves; or a method `link_tree` that describes how they move"
+    expected = "links that one joint or the pose alone moves; or the hook `link_tree`, which describes how they move"
     return InvalidValue(f"links of {type(robot).__name__} for simulators", found, expected)

@@ -94,8 +94,8 @@ def refused(kind, field, reason, **change):
 
 def test_base_points_that_coincide_are_refused_where_the_robot_would_turn_freely():
     one = ((0.3, 0.1), (0.3, 0.1 + ROUNDING), (0.3, 0.1))
-    refused(Planar3RPR, "base_points", "turns freely", base_points=one)
-    refused(Planar3RPR, "platform_points", "turns freely", platform_points=one)
+    refused(Planar3RPR, "base_points", "could turn freely", base_points=one)
+    refused(Planar3RPR, "platform_points", "could turn freely", platform_points=one)
     robot = Planar3PRR(Planar3PRR.Geometry(base_points=((0.0, 0.0),) * 3, rail_angles=(0.3, 2.4, 4.5)))
     assert robot.margin("det_J_x", np.array([0.05, 0.02, 0.4])) > 1e-3  # rails from one point hold the platform
 
