@@ -130,7 +130,7 @@ def test_two_equal_limbs_of_a_hexa_are_refused():
 def test_equal_azimuths_of_one_half_are_refused_and_of_two_halves_are_not(kind):
     a, b, turn = 0.4, 2.1, 2 * np.pi
     for azimuths in [(a,) * 4, (a, a + turn + ROUNDING, b, b + 1), (b, b + 1, a, a - turn)]:
-        refused(kind, "azimuths", "are one", azimuths=azimuths)
+        refused(kind, "azimuths", "coincide", azimuths=azimuths)
     robot = kind(kind.Geometry(azimuths=(a, b, a, b)))
     poses = np.array(kind().home) + [[0.03, 0.02, 0.01, t] for t in (0.5, -0.8)]
     assert (robot.margin("det_J_x", poses) > 1e-6).all()
