@@ -95,7 +95,7 @@ def test_a_pace_that_leaves_the_motion_is_refused(tau: list[float]) -> None:
 def test_a_pace_that_turns_back_is_refused() -> None:
     """tau' = t^2 - t, of which a law sees the ends alone."""
     values = ([0.0, 1.0], [0.5, 0.5 - 1 / 6], [0.0, 0.0], [-1.0], [2.0], [0.0])
-    with pytest.raises(InvalidValue, match="rising ones"):
+    with pytest.raises(InvalidValue, match="rising knots"):
         PacedMotion(spline(np.array([0.0, 1.0]), ALONG_X[None]), TimeLaw("back", *map(np.array, values)))
 
 
