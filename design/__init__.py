@@ -1,4 +1,4 @@
-"""Regions, requirements, the synthesis of geometries that meet them, maps, and proofs."""
+"""Regions, requirements, the optimal geometry that meets them, maps, and proofs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Wall-clock time that a search or a proof may take; what runs out of it says what it reached."""
+"""The wall-clock time that a search or a proof may take."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ Item = TypeVar("Item")
 
 
 class Budget:
-    """Some seconds from now on; infinity for no end.
+    """A number of seconds from now; infinity for no limit.
 
     Raises:
-        InvalidValue: not a number above 0.
+        InvalidValue: the number is not above 0.
     """
 
     def __init__(self, seconds: float) -> None:
@@ -29,24 +29,24 @@ class Budget:
 
     @property
     def left(self) -> float:
-        """What is left of it [s], never below 0."""
+        """The time that is left [s], never below 0."""
         return max(0.0, self._end - time.perf_counter())
 
     @property
     def spent(self) -> bool:
-        """Whether nothing is left."""
+        """Whether no time is left."""
         return self.left == 0.0
 
     def share(self, parts: int) -> Budget:
-        """A part of what is left."""
+        """One of `parts` equal parts of the time that is left."""
         return Budget(max(self.left / parts, 1e-9))
 
     def during(self, items: Iterable[Item]) -> Iterator[Item]:
-        """Items until it is spent; the first one always."""
+        """Items until the time is spent. The first one always comes."""
         for k, item in enumerate(items):
             if k and self.spent:
                 return
             yield item
 
     def __str__(self) -> str:
-        return "no end" if math.isinf(self.seconds) else f"{self.seconds:g} s"
+        return "no time limit" if math.isinf(self.seconds) else f"{self.seconds:g} s"

@@ -1,4 +1,4 @@
-"""Errors of design: each names what was asked, what was found and where."""
+"""Errors of `design`. Each names what was found and what would be right."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from kinematics import LinkwrightError, plain
 
 
 class InvalidRegion(LinkwrightError):
-    """A region that is empty, unbounded, or not in the mechanism's coordinates."""
+    """A region is empty, unbounded, or not in the mechanism's coordinates."""
 
     def __init__(self, key: str, found: object, expected: str) -> None:
         self.key, self.found, self.expected = key, found, expected
@@ -16,7 +16,7 @@ class InvalidRegion(LinkwrightError):
 
 
 class InvalidSection(LinkwrightError):
-    """A plane that the region does not have."""
+    """The region has no such plane."""
 
     def __init__(self, key: str, found: object, expected: str) -> None:
         self.key, self.found, self.expected = key, found, expected
@@ -24,17 +24,19 @@ class InvalidSection(LinkwrightError):
 
 
 class OutOfTime(LinkwrightError):
-    """A search that could not come to a first answer within its time."""
+    """A search found no first answer within its time."""
 
     exit_status = 1
 
     def __init__(self, what: str, seconds: float, reached: str) -> None:
         self.what, self.seconds, self.reached = what, seconds, reached
-        super().__init__(f"{what}: {seconds:g} s were used up at {reached}; expected more time, or a coarser question")
+        super().__init__(
+            f"{what}: found no answer in {seconds:g} s, reached {reached}; expected more time, or an easier question"
+        )
 
 
 class OtherCertificate(LinkwrightError):
-    """A certificate that was made for something else than what is asked."""
+    """A certificate was made for another question."""
 
     exit_status = 1
 
@@ -44,7 +46,7 @@ class OtherCertificate(LinkwrightError):
 
 
 class BrokenCertificate(LinkwrightError):
-    """A certificate that does not prove what it says."""
+    """A certificate does not prove its claim."""
 
     exit_status = 1
 
@@ -54,10 +56,10 @@ class BrokenCertificate(LinkwrightError):
 
 
 class UnreadableCertificate(BrokenCertificate):
-    """A file that holds no certificate; `path` names it."""
+    """The file `path` holds no certificate."""
 
     exit_status = 2
 
     def __init__(self, path: Path, found: object) -> None:
         self.path, self.found = path, found
-        super().__init__(f"{path} cannot be read: found {found}; expected what `save_certificate` wrote")
+        super().__init__(f"{path} cannot be read: found {found}; expected a file that `save_certificate` wrote")

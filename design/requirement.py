@@ -1,4 +1,4 @@
-"""What a geometry must fulfil at every pose of the region."""
+"""Requirements of a geometry at every pose of the region, and bounds of its variables."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Requirement:
-    """A named margin of the mechanism that is at least a bound."""
+    """A named margin of the mechanism must be at least a bound."""
 
     margin: str
     at_least: float
@@ -15,7 +15,7 @@ class Requirement:
 
 @dataclass(frozen=True)
 class Bounds:
-    """A design variable: one item of a geometry field, between two values; it is fixed where they are the same."""
+    """A design variable: one item of a geometry field between two bounds. Equal bounds fix it."""
 
     field: str
     item: int  # 0 for a plain number

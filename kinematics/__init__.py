@@ -1,4 +1,4 @@
-"""Mechanisms as loop closures, and all that follows from them."""
+"""Mechanisms as loop closures, and everything that is derived from them."""
 
 from __future__ import annotations
 

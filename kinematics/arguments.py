@@ -1,4 +1,4 @@
-"""Numbers that callers give: checked once, and plain from then on."""
+"""Checks of numbers that callers give; they return plain numbers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def finite(what: str, value: object, expected: str = "a finite number") -> float
     """As a float.
 
     Raises:
-        InvalidValue: text, a truth value, NaN or infinite.
+        InvalidValue: the value is text, a truth value, NaN or infinite.
     """
     if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
         raise InvalidValue(what, repr(value) if isinstance(value, str) else value, expected)
@@ -23,7 +23,7 @@ def positive(what: str, value: object, expected: str = "a finite number > 0") ->
     """As a float.
 
     Raises:
-        InvalidValue: not above 0, or as for `finite`.
+        InvalidValue: the value is not above 0, or as for `finite`.
     """
     number = finite(what, value, expected)
     if number <= 0.0:
@@ -35,7 +35,7 @@ def whole(what: str, value: object, low: int, high: int | None = None) -> int:
     """As an int.
 
     Raises:
-        InvalidValue: not a whole number between the two, both included.
+        InvalidValue: the value is not a whole number from `low` to `high`.
     """
     expected = f"a whole number, {low} or more" if high is None else f"a whole number from {low} to {high}"
     number = int(value) if isinstance(value, Integral) and not isinstance(value, bool) else None

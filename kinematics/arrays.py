@@ -1,4 +1,4 @@
-"""Arrays: those that come from outside, checked, and records with arrays, which compare by value."""
+"""Checks of arrays that callers give, and a base for records with arrays that compare by value."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ Array = np.ndarray
 
 
 class Value:
-    """A frozen dataclass that may hold arrays, made with `eq=False`; equal where all of its fields are.
+    """Base of frozen dataclasses (with `eq=False`) that may hold arrays. Two are equal if all fields are equal.
 
-    Arrays are equal where their shapes and all numbers are; NaN is equal to NaN there.
+    Arrays are equal if their shapes and all numbers are equal; NaN is equal to NaN here.
     """
 
     def __eq__(self, other: object) -> bool:
@@ -39,7 +39,7 @@ def _same(first: Any, second: Any) -> bool:
 
 
 def _key(value: Any) -> Any:
-    """Equal for equal values: the shape of an array, and the keys of a mapping, stand for them."""
+    """A key that is equal for equal values: for an array its shape, for a mapping its keys."""
     if isinstance(value, np.ndarray):
         return value.shape
     if isinstance(value, tuple):
@@ -52,7 +52,7 @@ def checked(values: Array, what: str, names: tuple[str, ...]) -> Array:
 
     Raises:
         InvalidShape: the last axis does not match.
-        InvalidValue: they are not all real numbers.
+        InvalidValue: not all values are real numbers.
     """
     try:
         given = np.asarray(values)
@@ -70,11 +70,11 @@ def together(first: Array, second: Array) -> tuple[Array, Array]:
     """Poses (..., n) and joints (..., m) with one leading shape.
 
     Raises:
-        InvalidValue: their leading shapes do not go together.
+        InvalidValue: their leading shapes cannot be broadcast to one shape.
     """
     try:
         lead = np.broadcast_shapes(first.shape[:-1], second.shape[:-1])
     except ValueError:
         found = f"leading shapes {first.shape[:-1]} and {second.shape[:-1]}"
-        raise InvalidValue("poses and joints", found, "shapes that go together") from None
+        raise InvalidValue("poses and joints", found, "leading shapes that can be broadcast to one shape") from None
     return np.broadcast_to(first, (*lead, first.shape[-1])), np.broadcast_to(second, (*lead, second.shape[-1]))

@@ -1,4 +1,4 @@
-"""The errors of this project; each keeps its data beside its message."""
+"""The errors of this project. Each holds its data and its message."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 
 def plain(value: Any) -> Any:
-    """The same value for a message: numbers and arrays of numpy as Python's own, in tuples and lists too."""
+    """The same value for a message: numbers and arrays of numpy become Python's own, also inside tuples and lists."""
     if hasattr(value, "tolist"):
         return value.tolist()
     if type(value) in (list, tuple):
@@ -18,7 +18,7 @@ def plain(value: Any) -> Any:
 class LinkwrightError(Exception):
     """Base of every error that Linkwright raises on purpose.
 
-    `exit_status` is the command line's: 2 where the input is wrong, 1 where a requirement fails.
+    `exit_status` is that of the command line: 2 if the input is wrong, 1 if a requirement fails.
     """
 
     exit_status = 2
@@ -33,7 +33,7 @@ class InvalidGeometry(LinkwrightError):
 
 
 class InvalidShape(LinkwrightError):
-    """An array's last axis does not match the names that it stands for."""
+    """An array's last axis does not have one entry for each name."""
 
     def __init__(self, what: str, names: Sequence[str], found: tuple[int, ...]) -> None:
         self.what, self.names, self.found = what, tuple(names), found
@@ -47,13 +47,13 @@ class UnreachablePose(LinkwrightError):
         self.pose, self.limb, self.margin = tuple(float(v) for v in pose), limb, margin
         where = ", ".join(f"{v:.6g}" for v in self.pose)
         super().__init__(
-            f"pose ({where}): limb {limb} cannot reach it, its reach margin is {margin:.6g} m; "
+            f"pose ({where}): limb {limb} cannot reach it: found a reach margin of {margin:.6g} m; "
             "expected a margin of at least 0"
         )
 
 
 class InvalidValue(LinkwrightError):
-    """An argument has a value outside what it can mean."""
+    """An argument has an impossible value."""
 
     def __init__(self, what: str, found: object, expected: str) -> None:
         self.what, self.found, self.expected = what, found, expected
@@ -61,7 +61,7 @@ class InvalidValue(LinkwrightError):
 
 
 class InvalidField(InvalidValue):
-    """A field of a record has a value that it cannot have; `use` says for what it cannot, "" for anything."""
+    """A field of a record has an impossible value; `use` says for which use it is impossible, "" for any."""
 
     def __init__(self, record: str, field: str, found: object, expected: str, use: str = "") -> None:
         self.record, self.field, self.use = record, field, use

@@ -1,4 +1,4 @@
-"""Proved bounds for people: rounded in their last shown digit, and never to the side on which they were not proved."""
+"""Proved bounds as text. They are rounded only to the side on which they are proved."""
 
 from __future__ import annotations
 

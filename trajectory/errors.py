@@ -1,4 +1,4 @@
-"""Errors of paths, timing and files; each carries its data."""
+"""Errors of paths, timing and files. Each holds its data."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from kinematics import InvalidValue, LinkwrightError
 
 
 def _place(at: float, pose: Sequence[float] | None, waypoint: int | None) -> str:
-    """Where on a path, in words."""
+    """A place on a path, in words."""
     of_pose = "" if pose is None else f", pose ({', '.join(f'{v:.6g}' for v in pose)})"
     near = "" if waypoint is None else f", nearest to waypoint {waypoint}"
     return f"path at s = {at:.6g} m{of_pose}{near}"
@@ -23,13 +23,13 @@ class RoughPath(LinkwrightError):
     def __init__(self, at: float, what: str, found: float, bound: float, waypoint: int | None = None) -> None:
         self.at, self.what, self.found, self.bound, self.waypoint = at, what, found, bound, waypoint
         super().__init__(
-            f"{_place(at, None, waypoint)}: {what} is {found:.4g}, expected at most {bound:.4g}; "
-            "let it stop where it reverses (a corner without a blend), or round the corner more"
+            f"{_place(at, None, waypoint)}: found {what} of {found:.4g}; expected at most {bound:.4g}: "
+            "a stop where the path reverses (a corner without a blend), or a larger blend"
         )
 
 
 class InvalidPath(InvalidValue):
-    """A pose, counted from 1, does not fit into its path."""
+    """A pose does not fit into its path; poses count from 1."""
 
     def __init__(self, pose: int, field: str, found: object, expected: str) -> None:
         self.pose, self.field = pose, field
@@ -37,7 +37,7 @@ class InvalidPath(InvalidValue):
 
 
 class UnsuitedPath(InvalidValue):
-    """A timing law does not take a path of this kind."""
+    """A timing law cannot use a path of this kind."""
 
     def __init__(self, law: str, found: str, expected: str) -> None:
         self.law = law
@@ -45,10 +45,10 @@ class UnsuitedPath(InvalidValue):
 
 
 class PathRefused(LinkwrightError):
-    """A path passes where a limb cannot reach or the robot is singular, or could not be proved not to.
+    """A path has a pose where a limb cannot reach or the robot is singular, or it could not be proved that it has none.
 
-    `at` is the arc length [m], `limb` counts from 1, None where all limbs together are meant; `bound` is an upper
-    bound of the margin there where it fails, and its best lower bound where it is undecided; `waypoint` is the nearest.
+    `at` is the arc length [m]. `limb` counts from 1; None means all limbs together. If the margin fails, `bound` is its
+    upper bound there; if it is undecided, `bound` is its best lower bound. `waypoint` is the nearest one.
     """
 
     def __init__(
@@ -65,15 +65,16 @@ class PathRefused(LinkwrightError):
         self.pose, self.waypoint = tuple(float(v) for v in pose), waypoint
         where = _place(at, self.pose, waypoint)
         of_limb = "" if limb is None else f" of limb {limb}"
-        found = f"at most {bound:.6g}" if proved else f"undecided, proved is at least {bound:.6g}"
+        found = f"at most {bound:.6g}" if proved else f"undecided (only at least {bound:.6g} is proved)"
         super().__init__(f"{where}: the {margin} margin{of_limb} is {found}; expected above 0")
 
 
 class PathBeyondLimit(LinkwrightError):
-    """A path passes a pose that breaks a limit however it is travelled.
+    """A path has a pose that breaks a limit at any speed.
 
-    `limit` is the field of the limits, `at` the arc length [m], `found` the joint's value beyond `allowed`, SI: its
-    position or, with `of_torque`, what the weight alone asks of it at rest. `waypoint` is the nearest, from 1.
+    `limit` is the field of the limits and `at` the arc length [m]. `found` is the joint's value outside `allowed` in
+    SI: its position or, with `of_torque`, the torque for the weight at rest. `waypoint` is the nearest one, counted
+        from 1.
     """
 
     exit_status = 1
@@ -94,7 +95,7 @@ class PathBeyondLimit(LinkwrightError):
         self.found, self.allowed = found, allowed
         self.pose, self.waypoint = tuple(float(v) for v in pose), waypoint
         what = (
-            f"the weight alone, at rest, asks {joint} for a torque of" if of_torque else f"the position of {joint} is"
+            f"holding the weight at rest needs a torque at {joint} of" if of_torque else f"the position of {joint} is"
         )
         super().__init__(
             f"{_place(at, self.pose, waypoint)}: {what} {found:.6g} {unit}; "
@@ -103,7 +104,7 @@ class PathBeyondLimit(LinkwrightError):
 
 
 class MoveRefused(LinkwrightError):
-    """A move passes a pose that it must not: `found` says what, `time` when [s], NaN where it is not known yet."""
+    """A move passes a pose that is not allowed. `found` says why, `time` is when [s]; NaN if that is not known yet."""
 
     exit_status = 1
 
@@ -112,12 +113,12 @@ class MoveRefused(LinkwrightError):
         when = "" if math.isnan(time) else f" at t = {time:.6g} s"
         super().__init__(
             f"move{when}, about pose ({', '.join(f'{v:.6g}' for v in self.pose)}): found {found}; "
-            "expected every pose within reach and within the ranges, and none singular"
+            "expected every pose within reach and within the ranges, and no singular pose"
         )
 
 
 class TimingFailed(LinkwrightError):
-    """No time law was found for what was asked."""
+    """No time law was found."""
 
     exit_status = 1
 
@@ -128,9 +129,9 @@ class TimingFailed(LinkwrightError):
 
 
 class JointPeak(NamedTuple):
-    """Where a limited quantity is largest over its limit: the joint, when [s], the value there and the limit, SI.
+    """Where a limited quantity is largest over its limit: the joint, the time [s], the value and the limit in SI.
 
-    `ratio` is how much of the limit is used.
+    `ratio` is the value over the limit.
     """
 
     joint: str
@@ -144,7 +145,7 @@ class JointPeak(NamedTuple):
 
 
 class LimitsExceeded(LinkwrightError):
-    """A motion breaks a limit by more than may be repaired; `peaks` says where, as far as that is known."""
+    """A motion breaks a limit by more than may be repaired. `peaks` says where, if it is known."""
 
     exit_status = 1
 
@@ -162,12 +163,12 @@ class LimitsExceeded(LinkwrightError):
 
     @classmethod
     def of_peaks(cls, peaks: Mapping[str, JointPeak]) -> LimitsExceeded:
-        """Of the peaks of a motion that are over their limits."""
+        """The error for those peaks of a motion that are above their limits."""
         return cls({name: peak.ratio for name, peak in peaks.items()}, 1.0, peaks)
 
 
 class SetpointFileError(LinkwrightError):
-    """A set-point file is not what the writer writes."""
+    """A set-point file is not as `write_setpoints` writes it."""
 
     def __init__(self, file: FilePath, line: int, found: str, expected: str) -> None:
         self.file, self.line, self.found, self.expected = file, line, found, expected
@@ -175,7 +176,7 @@ class SetpointFileError(LinkwrightError):
 
 
 class WaypointFileError(LinkwrightError):
-    """A file of waypoints cannot be used; `column` is "" where a line as a whole is meant."""
+    """A file of waypoints cannot be used; `column` is "" if a whole line is at fault."""
 
     def __init__(self, file: FilePath, line: int, column: str, found: str, expected: str) -> None:
         self.file, self.line, self.column, self.found, self.expected = file, line, column, found, expected

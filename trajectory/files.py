@@ -1,4 +1,4 @@
-"""Files that are whole or not there at all."""
+"""Write files so that each is complete or does not appear at all."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class CannotWrite(LinkwrightError):
 
 
 def require_writable(folder: Path) -> None:
-    """Try to make the folder and a file in it, before hours of work go into what it should hold; neither is left.
+    """Check, before long work, that the folder and a file in it can be made. Both are removed again.
 
     Raises:
         CannotWrite: with the path and the system's reason.
@@ -39,14 +39,14 @@ def require_writable(folder: Path) -> None:
 
 
 def write_files(folder: Path, files: Mapping[str, str | bytes], remove: Iterable[str] = ()) -> list[Path]:
-    """Write all files into a folder; each replaces its predecessor at once, and none is touched if one cannot be made.
+    """Write all files into a folder. Each replaces the old file at once. If one cannot be made, no file is changed.
 
-    An interrupt waits until all are written.
+    An interrupt waits until all files are written.
 
     Args:
-        folder: made where it does not exist.
-        files: content by name; a name may begin with folders, which are made.
-        remove: names of files to remove once the others are written; folders that this leaves empty go too.
+        folder: the folder; it is made if needed.
+        files: content by name. A name may begin with folders, which are made if needed.
+        remove: names of files to remove after the others are written. Folders that become empty are removed too.
 
     Raises:
         CannotWrite: with the path and the system's reason.
@@ -74,13 +74,13 @@ def write_files(folder: Path, files: Mapping[str, str | bytes], remove: Iterable
 
 
 def _beside(target: Path, content: str | bytes) -> str:
-    """A temporary file beside the target, on the disk with all of the content; nothing where that fails."""
+    """Write a temporary file beside the target, complete on the disk. If that fails, the file is removed."""
     handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name[:64]}.")
     try:
         with os.fdopen(handle, "wb") as stream:
             stream.write(content.encode() if isinstance(content, str) else content)
             stream.flush()
-            os.fsync(stream.fileno())  # a full disk may be told only here
+            os.fsync(stream.fileno())  # some systems report a full disk only here
         os.chmod(temporary, 0o644)
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
@@ -89,7 +89,7 @@ def _beside(target: Path, content: str | bytes) -> str:
 
 
 def _make(folder: Path) -> list[Path]:
-    """Make a folder; those that were missing, the innermost first."""
+    """Make a folder; returns the folders that were missing, the innermost first."""
     missing = [path for path in (folder, *folder.parents) if not path.exists()]
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -100,27 +100,30 @@ def _make(folder: Path) -> list[Path]:
 
 
 def _unmake(folders: Iterable[Path]) -> None:
-    """Remove these folders, as far as they are empty."""
+    """Remove those of these folders that are empty."""
     for path in folders:
-        with suppress(OSError):  # not made, or in use by now
+        with suppress(OSError):  # it was not made, or is in use
             path.rmdir()
 
 
 @contextmanager
 def _told(folder: Path) -> Iterator[None]:
-    """An error of the system as one of ours, with the path that the system names."""
+    """Raise an error of the system as `CannotWrite`, with the path that the system names."""
     try:
         yield
-    except (OSError, ValueError) as error:  # ValueError: a name that no system takes, such as one with a null in it
+    except (
+        OSError,
+        ValueError,
+    ) as error:  # ValueError: a name that no system accepts, such as one with a null character
         path = getattr(error, "filename2", None) or getattr(error, "filename", None) or folder
         raise CannotWrite(Path(os.fsdecode(path)), getattr(error, "strerror", None) or str(error)) from error
 
 
 @contextmanager
 def _interrupts_wait() -> Iterator[None]:
-    """Signals that would end the program take effect after the block."""
+    """Delay signals that would end the program until after the block."""
     if threading.current_thread() is not threading.main_thread():
-        yield  # their handlers run in the main thread only
+        yield  # signal handlers run only in the main thread
         return
     came: list[int] = []
     handlers = {kind: signal.signal(kind, lambda n, _: came.append(n)) for kind in (signal.SIGINT, signal.SIGTERM)}
@@ -128,6 +131,6 @@ def _interrupts_wait() -> Iterator[None]:
         yield
     finally:
         for kind, handler in handlers.items():
-            signal.signal(kind, handler or signal.SIG_DFL)  # None: set by other than Python
+            signal.signal(kind, handler or signal.SIG_DFL)  # None: the handler was not set by Python
         for number in came:
             signal.raise_signal(number)

@@ -1,4 +1,4 @@
-"""Proofs over whole regions, their files, and their replay."""
+"""Proofs over whole regions, their files, and their check."""
 
 from design.certificates.best_bound import BestBound, best_bound
 from design.certificates.certificate import MOST_BOXES, Certificate, answer_by_boxes, certify, checked_boxes

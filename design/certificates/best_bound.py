@@ -13,8 +13,8 @@ from design.claims import Statement
 from design.regions import Region
 from kinematics import FviBounds, Mechanism, positive
 
-_MOST_TRIES = 12  # of bounds, the refuted ones included
-_COARSEST = 6  # doublings of the tolerance
+_MOST_TRIES = 12  # bounds that are tried, including the refuted ones
+_COARSEST = 6  # most doublings of the tolerance
 _SHARES = 4  # one try and a bisection of the doublings
 
 
@@ -23,8 +23,8 @@ class BestBound:
     """A certified worst case.
 
     Attributes:
-        certificate: proved; its `at_least` is the bound.
-        sampled: the lowest value that a search found, so the true worst lies between the two.
+        certificate: a proved certificate; its `at_least` is the bound.
+        sampled: the lowest value that a search found. The true worst value is between the two.
     """
 
     certificate: Certificate
@@ -43,19 +43,19 @@ def best_bound(
     seconds: float = math.inf,
     progress: Progress = lambda _: None,
 ) -> BestBound | None:
-    """The largest bound that is proved, to a tolerance in the margin's unit; None where nothing is proved.
+    """The largest bound that is proved, to a tolerance in the margin's unit; None if no bound is proved.
 
-    The first try is the lowest sampled value less the tolerance. Where that is refuted the counterexample's value takes
-    its place; where it stays undecided the smallest 2^k tolerances that are proved are sought, so compare `sampled`
-    with what was proved. A bound that is not positive says nothing of a positive margin and is not tried for it,
-    unless the tolerance itself asks for it.
+    The first try is the lowest sampled value minus the tolerance. If it is refuted, the value of the counterexample
+    replaces the lowest one. If it is undecided, the search finds the smallest k for which a distance of 2^k tolerances
+    is proved, so compare `sampled` with the bound. For a positive margin no bound of 0 or below is tried, as it says
+    nothing, unless the tolerance itself requires it.
 
     Args:
-        most_boxes, seconds: for all tries together; a single one gets a quarter of the boxes and half of the time left.
+        most_boxes, seconds: for all tries together. One try gets a quarter of the boxes and half of the time left.
         robot, region, margin, bounds, characteristic_length, progress: as in `certify`.
     """
     tolerance, budget = positive("tolerance", tolerance), Budget(seconds)
-    statement = Statement.of(robot, margin, 0.0, bounds, characteristic_length)  # the bound is what is sought
+    statement = Statement.of(robot, margin, 0.0, bounds, characteristic_length)  # the bound is still unknown
     region.check(robot.pose_names)
     share = max(1, checked_boxes(most_boxes) // _SHARES)
     sampled = float(statement.value(suspects(statement, region, 10 * SEED, budget.share(_SHARES))[0]))
@@ -78,6 +78,6 @@ def best_bound(
 
 
 def _coarsest(sampled: float, tolerance: float) -> int:
-    """How often the tolerance may be doubled before the bound of a positive margin is not positive."""
+    """How often the tolerance may be doubled while the bound of a positive margin stays positive."""
     room = sampled / tolerance if sampled > 0.0 else math.inf
     return _COARSEST if room > 2.0**_COARSEST else max(0, math.ceil(math.log2(room)) - 1)

@@ -1,7 +1,7 @@
-"""How a region was cut into boxes: a binary tree whose leaves cover it because no cut leaves a gap.
+"""How a region was cut into boxes: a binary tree. Its leaves cover the region, because no cut leaves a gap.
 
-A box is cut in the middle of one coordinate, and both halves keep the face between them. The codes are stored level by
-level, so that any list of codes is either one whole tree or refused; the boxes follow from the root alone.
+A box is cut in the middle of one coordinate, and both halves include the face between them. The codes are stored level
+by level. So a list of codes is either one whole tree or is refused, and the boxes follow from the root alone.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from kinematics import Array
 
 PROVED, OUTSIDE, LEFT = -1, -2, -3  # leaves; a code from 0 on is the coordinate that is cut
 BATCH = 1 << 16
-MOST_NODES = 1 << 24  # of a tree: some hundred megabytes while it is walked
-_MOST_LEVELS = 2200  # for each coordinate: so many halvings leave no two doubles between its bounds
+MOST_NODES = 1 << 24  # of a tree: some hundred megabytes while it is read
+_MOST_LEVELS = 2200  # for each coordinate: after so many halvings no double is left between its bounds
 
 
 def root(region: Region, names: tuple[str, ...]) -> tuple[Array, Array]:
@@ -27,7 +27,7 @@ def root(region: Region, names: tuple[str, ...]) -> tuple[Array, Array]:
 
 
 def halves(low: Array, high: Array, axis: Array) -> tuple[Array, Array]:
-    """(k, n) boxes cut along axis (k,) -> (2 k, n): lower and upper half of each, side by side."""
+    """(k, n) boxes cut across coordinate axis (k,) -> (2 k, n): lower and upper half of each, next to each other."""
     rows = np.arange(len(low))
     cut = 0.5 * low[rows, axis] + 0.5 * high[rows, axis]
     lows, highs = np.repeat(low, 2, axis=0), np.repeat(high, 2, axis=0)
@@ -37,7 +37,7 @@ def halves(low: Array, high: Array, axis: Array) -> tuple[Array, Array]:
 
 
 def outside(region: Region, low: Array, high: Array, names: tuple[str, ...]) -> Array:
-    """(k,) whether no point of the box is in the region; only then, whatever the rounding."""
+    """(k,) whether no point of the box is in the region. Rounding can never make this true wrongly."""
     if not isinstance(region, Cylinder):
         return np.zeros(len(low), dtype=bool)
     columns = [names.index("x"), names.index("y")]
@@ -47,7 +47,7 @@ def outside(region: Region, low: Array, high: Array, names: tuple[str, ...]) -> 
 
 
 class Tree:
-    """The codes of the nodes in the order in which they were decided, and where their halves are."""
+    """The codes of the nodes in the order in which they were decided, and the places of their halves."""
 
     def __init__(self) -> None:
         self._code = np.full(1 << 12, LEFT, dtype=np.int8)
@@ -55,11 +55,11 @@ class Tree:
         self._size = 1
 
     def leaves(self, nodes: Array, code: int) -> None:
-        """Decide these nodes (k,)."""
+        """Make these nodes (k,) leaves with this code."""
         self._code[nodes] = code
 
     def cut(self, nodes: Array, axis: Array) -> Array:
-        """Cut these nodes (k,) along axis (k,); (2 k,) their halves side by side."""
+        """Cut these nodes (k,) across coordinate axis (k,); returns (2 k,) their halves, next to each other."""
         end = self._size + 2 * len(nodes)
         while end > len(self._code):
             self._code = np.concatenate([self._code, np.full_like(self._code, LEFT)])
@@ -82,9 +82,10 @@ class Tree:
 
 
 def leaves(codes: Array, low: Array, high: Array) -> Iterator[tuple[Array, Array, Array]]:
-    """Codes (k,) of leaves and their bounds (k, n) twice, in batches, from the codes by level and the root's bounds.
+    """Batches of leaves: codes (k,), lower and upper bounds (k, n).
 
-    Depth first, so that no more than a batch of boxes a level is in memory, however many a level has.
+    The arguments are all codes by level and the root's bounds. The order is depth first, so that memory holds at most
+    one batch of boxes for each level.
 
     Raises:
         BrokenCertificate: the codes are not one whole tree over the root's coordinates.
@@ -105,7 +106,7 @@ def leaves(codes: Array, low: Array, high: Array) -> Iterator[tuple[Array, Array
 
 
 def _first_halves(codes: Array, coordinates: int) -> Array:
-    """(nodes,) where the halves of each node, or of the next one that is cut, start: one after every node before them.
+    """(nodes,) the place where the halves of each node start. For a leaf: those of the next node that is cut.
 
     Raises:
         BrokenCertificate: as in `leaves`.
@@ -113,20 +114,20 @@ def _first_halves(codes: Array, coordinates: int) -> Array:
     if len(codes) > MOST_NODES:
         raise BrokenCertificate(f"its list of boxes has {len(codes)} entries, more than {MOST_NODES}")
     if (codes >= coordinates).any() or (codes < LEFT).any():
-        raise BrokenCertificate("its list of boxes has a code of no meaning")
+        raise BrokenCertificate("its list of boxes has an unknown code")
     cut = codes >= 0
-    ends = 1 + 2 * np.cumsum(cut, dtype=np.int32)  # of the list, as far as the nodes up to each one tell
+    ends = 1 + 2 * np.cumsum(cut, dtype=np.int32)  # the list's length, as known from the nodes up to each one
     if not len(codes) or ends[-1] > len(codes) or (ends <= np.arange(1, len(codes) + 1))[:-1].any():
         raise BrokenCertificate("its list of boxes does not cover the region")
     if ends[-1] < len(codes):
-        raise BrokenCertificate("its list of boxes goes on beyond the region")
+        raise BrokenCertificate("its list of boxes has more entries than the region's tree")
     ends[1:], ends[0] = ends[:-1].copy(), 1  # the halves before a node's own
     _require_few_levels(ends, _MOST_LEVELS * coordinates)
     return ends
 
 
 def _require_few_levels(first: Array, most: int) -> None:
-    """A chain of a million boxes would be walked box by box."""
+    """Refuse trees with too many levels: a chain of a million boxes would be read one box at a time."""
     level, count = 0, 0
     while level < len(first) - 1 and (below := int(first[level])) > level:
         level, count = below, count + 1

@@ -1,6 +1,6 @@
-"""Cut a region into boxes until each is proved, one fails, or the allowance of boxes or of time is used up.
+"""Cut a region into boxes until each is proved, one fails, or no boxes or time are left.
 
-Boxes are taken depth first in batches, so memory stays bounded by a few batches a level.
+Boxes are taken depth first in batches, so that memory holds only a few batches for each level.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from design.regions import Region
 from kinematics import Array, Value
 
 SMALLEST = 1e-6  # boxes narrower than this part of the region in every coordinate are not cut
-_MOST_SMALL = 1000  # of those, before the search ends
+_MOST_SMALL = 1000  # the search ends after so many of these boxes
 
 
 @dataclass(frozen=True, eq=False)
 class Search(Value):
-    """What the search came to.
+    """The result of the search.
 
     Attributes:
         codes: (nodes,) the tree by level.
-        boxes: how many boxes were bounded.
+        boxes: the number of boxes that were bounded.
         left: (k, 2, n) lower and upper bounds of the boxes that were not proved.
         refutation: a pose that fails, else None.
     """
@@ -48,14 +48,14 @@ def search(
     budget: Budget,
     progress: Callable[[str], None],
 ) -> Search:
-    """Bound boxes, cut those that stay open along the coordinate that spreads their claims the most.
+    """Bound boxes. An undecided box is cut across the coordinate that widens the bounds of its claims the most.
 
     Args:
-        bounds: of the statement, over a region that holds this one.
-        refuter: of the same statement.
-        mirrors: those that allow to look at one side only.
-        most_boxes, budget: what ends it undecided, with the boxes that are left.
-        progress: told how far it is after each batch.
+        bounds: the lower bounds of the statement, over a region that contains this one.
+        refuter: finds poses that refute the same statement.
+        mirrors: the mirrors for which one side of the region is enough.
+        most_boxes, budget: the allowed boxes and time; at their end the answer is undecided, with the boxes left.
+        progress: called with a line of text after each batch.
     """
     names = bounds.statement.robot.pose_names
     low, high = one_side(*root(region, names), mirrors, names)

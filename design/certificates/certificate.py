@@ -2,12 +2,11 @@
 
     certify(robot, region, "fvi", at_least=1.0).status  ->  "proved", "refuted" or "undecided"
 
-What a proof rests on, beside the margins' lemmas and the mean-value theorem: IEEE 754 arithmetic, the accuracy that
-`kinematics.evaluation` assumes of the sine, cosine and arctangent, and CasADi's algebra, which builds the expressions
-and their derivatives. What is proved is a statement about real numbers: geometry, region and bound are the exact values
-of their doubles, and so are the constants written into the model (2 pi among them, and products of two such constants,
-which CasADi rounds once). A region's boundary counts as inside. Plain evaluation only chooses signs, scalings, cuts and
-counterexamples.
+A proof relies on the margins' lemmas, the mean-value theorem, IEEE 754 arithmetic, the accuracy that
+`kinematics.evaluation` assumes of sine, cosine and arctangent, and CasADi's algebra, which builds the expressions and
+their derivatives. The proved statement is about real numbers. Geometry, region and bound are the exact values of their
+doubles. So are the constants in the model, such as 2 pi, and products of two such constants, which CasADi rounds once.
+A region's boundary counts as inside. Plain evaluation only chooses signs, scalings, cuts and counterexamples.
 """
 
 from __future__ import annotations
@@ -33,28 +32,28 @@ from kinematics import Array, FviBounds, Mechanism, Value, rounded_down, whole
 
 Progress = Callable[[str], None]
 MOST_BOXES = 4_000_000
-EDITION = 2  # of what a certificate claims beside its margin; since 2: that every limb reaches
-SEED = 20_000  # poses of the grid that looks for a counterexample first
+EDITION = 2  # what a certificate claims besides its margin; edition 2 also claims that every limb can reach
+SEED = 20_000  # poses of the grid that is first searched for a counterexample
 _MOST_PER_COORDINATE = 200
 
 
 @dataclass(frozen=True, eq=False)
 class Certificate(Value):
-    """A claim, the answer, and for a proof the boxes that anyone can check again.
+    """A claim and its answer. A proof includes the boxes, so that anyone can check it again.
 
     Attributes:
-        mechanism, digest, conditions: class name, SHA-256 of the geometry, and of joint ranges and working mode.
+        mechanism, digest, conditions: class name, SHA-256 of the geometry, SHA-256 of joint ranges and working mode.
         region, margin, at_least: the claim.
-        bounds, characteristic_length: what the FVI is measured with; length in metres.
-        version, edition: of the program that made it, and `EDITION` then.
+        bounds, characteristic_length: what the FVI is measured with; the length is in metres.
+        version, edition: the version of the program that made the certificate, and its `EDITION`.
         status: "proved", "refuted" or "undecided".
-        counterexample: (n,) a pose where the margin is below the bound beyond rounding, or that a limb cannot reach.
-        within_reach: whether every limb reaches the counterexample; True without one.
-        boxes: how many boxes were bounded.
+        counterexample: (n,) a pose where the margin is below the bound by more than rounding, or out of a limb's reach.
+        within_reach: whether every limb can reach the counterexample; True without one.
+        boxes: the number of boxes that were bounded.
         codes: (nodes,) the tree of boxes by level; see `box_tree`. Empty unless proved.
         left: (k, 2, n) lower and upper bounds of the boxes that were not proved.
-        mirrors: coordinates whose signs change together without changing the margin; of each only the side where its
-            first one is at least 0 was looked at. See `symmetry`.
+        mirrors: coordinates whose signs can change together without changing the margin. For each mirror only the side
+            where its first coordinate is at least 0 was searched. See `symmetry`.
     """
 
     mechanism: str
@@ -76,7 +75,7 @@ class Certificate(Value):
     mirrors: Mirrors
 
     def statement(self, robot: Mechanism) -> Statement:
-        """What it says, of a robot that is still to be shown to be the one it was made for."""
+        """The certificate's statement about `robot`. Whether it was made for this robot is not checked here."""
         return Statement(robot, self.margin, self.at_least, self.bounds, self.characteristic_length)
 
     def __str__(self) -> str:
@@ -100,16 +99,16 @@ def certify(
 
     Args:
         robot: the mechanism with its geometry.
-        region: continuous in all coordinates, its boundary included.
+        region: all its poses count, including its boundary.
         margin: one of `robot.margins`.
         at_least: the bound, in the margin's unit.
         bounds, characteristic_length: as in `Mechanism.margin`.
         most_boxes, seconds: after so many boxes, or so much time, the answer is "undecided", with the boxes left.
-        progress: told a line of text at each step.
+        progress: called with a line of text at each step.
 
     Raises:
-        InvalidRegion: the region does not speak of the robot's coordinates.
-        InvalidValue: see `Statement`; or no box allowed, or more than a certificate can hold.
+        InvalidRegion: the region does not have the robot's coordinates.
+        InvalidValue: see `Statement`; or `most_boxes` is below 1, or more than a certificate can hold.
     """
     statement = Statement.of(robot, margin, at_least, bounds, characteristic_length)
     region.check(robot.pose_names)
@@ -117,10 +116,10 @@ def certify(
 
 
 def checked_boxes(most_boxes: object) -> int:
-    """How many boxes are allowed, no more than a certificate can hold.
+    """The number of boxes that are allowed, at most as many as a certificate can hold.
 
     Raises:
-        InvalidValue: not such a number.
+        InvalidValue: it is not such a number.
     """
     return whole("most_boxes", most_boxes, 1, MOST_NODES // 2)
 
@@ -142,14 +141,14 @@ def answer(statement: Statement, region: Region, most_boxes: int, budget: Budget
 def answer_by_boxes(
     lower: LowerBounds, refuter: Refuter, region: Region, most_boxes: int, budget: Budget, progress: Progress
 ) -> Certificate:
-    """Prove by boxes; the region may be a part of the one that the lower bounds were made for."""
+    """Prove with boxes. The region may be a part of the region that the lower bounds were made for."""
     mirrors = mirrors_of(lower.statement.robot, region, lower.statement.margin)
     found = search(lower, refuter, region, mirrors, most_boxes, budget, progress)
     return _certificate(lower.statement, region, mirrors, found)
 
 
 def suspects(statement: Statement, region: Region, about: int, budget: Budget) -> Array:
-    """(k, n) poses where the margin is lowest as far as a grid and descents tell, the lowest first."""
+    """(k, n) poses where a grid and descents find the margin lowest, the lowest first."""
     measured = {"bounds": statement.bounds, "characteristic_length": statement.length}
     if region.dimension == 0:
         return region.from_unit(np.empty((1, 0)), statement.robot.pose_names)

@@ -1,6 +1,6 @@
-"""Certificates as files: an npz archive of plain arrays with a JSON header; nothing in it is ever executed.
+"""Certificates as files: an npz archive of plain arrays with a JSON header. Nothing in it is ever executed.
 
-A file is not trusted: no part of it is unpacked before its size is known, and each part has a largest one.
+A file is not trusted. No part of it is unpacked before its size is known, and each part has a largest size.
 """
 
 from __future__ import annotations
@@ -37,16 +37,16 @@ _PLAIN: dict[str, type] = {
     "within_reach": bool,
     "boxes": int,
 }
-_LARGEST_FILE = 1 << 23  # bytes; the largest known has a hundredth of it
-_MOST_LEFT = 1 << 16  # boxes that were not proved; they show where, and prove nothing
-# Bytes of each member at most, the header of its array included.
+_LARGEST_FILE = 1 << 23  # bytes; a hundred times the largest known file
+_MOST_LEFT = 1 << 16  # boxes that were not proved; they show where the proof failed
+# Largest number of bytes of each part, including the header of its array.
 _LARGEST = {
     "header": 1 << 16,
     "counterexample": 1 << 12,
     "codes": MOST_NODES + 256,
     "left": _MOST_LEFT * 2 * 6 * 8 + 256,
 }
-# All that numpy, zipfile and json raise on bytes that they did not write.
+# All errors that numpy, zipfile and json raise for bytes that they did not write.
 _FAULTS = (
     OSError,
     ValueError,
@@ -67,7 +67,7 @@ _FAULTS = (
 
 
 def certificate_bytes(certificate: Certificate) -> bytes:
-    """The file's content; the same certificate gives the same bytes. Of the boxes left it keeps the first 65,536."""
+    """The file's content; the same certificate gives the same bytes. At most 65,536 of the boxes left are kept."""
     header: dict[str, Any] = {key: getattr(certificate, key) for key in _PLAIN}
     header |= {
         "region": _region_record(certificate.region),
@@ -87,15 +87,15 @@ def certificate_bytes(certificate: Certificate) -> bytes:
 
 
 def save_certificate(certificate: Certificate, path: Path) -> None:
-    """Write it; the name should end in .npz. Numbers keep every bit; for boxes left see `certificate_bytes`."""
+    """Write a certificate; the name should end in .npz. Numbers keep every bit. See `certificate_bytes`."""
     path.write_bytes(certificate_bytes(certificate))
 
 
 def load_certificate(path: Path) -> Certificate:
-    """Read it back; what it claims is still to be checked by `replay`.
+    """Read a certificate. Its claim is not checked yet: `replay` does that.
 
     Raises:
-        UnreadableCertificate: no such archive, or a part of it is missing or not what it should be.
+        UnreadableCertificate: there is no such archive, or a part of it is missing or wrong.
     """
     try:
         return _certificate(path)
@@ -111,7 +111,7 @@ def _certificate(path: Path) -> Certificate:
         _array(parts[k], d, n) for k, d, n in (("counterexample", "f8", 1), ("codes", "i1", 1), ("left", "f8", 3))
     )
     if not (np.isfinite(pose).all() and np.isfinite(left).all() and left.shape[1] == 2):
-        raise ValueError("a counterexample or a box left that is not of finite numbers")
+        raise ValueError("a counterexample or a box left with numbers that are not finite")
     plain = {key: _of_kind(key, header[key], kind) for key, kind in _PLAIN.items()}
     if plain["boxes"] < 0:
         raise ValueError(f"{plain['boxes']} boxes")
@@ -131,7 +131,7 @@ def _certificate(path: Path) -> Certificate:
 
 
 def _members(path: Path) -> dict[str, bytes]:
-    """The archive's parts, each once and none larger than it may be."""
+    """The archive's parts by name. Each is there once and is not too large."""
     if (size := path.stat().st_size) > _LARGEST_FILE:
         raise ValueError(f"{size} bytes")
     with zipfile.ZipFile(path) as archive:
@@ -141,14 +141,14 @@ def _members(path: Path) -> dict[str, bytes]:
             raise ValueError(f"the parts {', '.join(names)[:200]}")
         for info in infos:
             if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-                raise ValueError(f"{info.filename} packed in another way")
+                raise ValueError(f"{info.filename} compressed in another way")
             if info.file_size > _LARGEST[info.filename.removesuffix(".npy")]:
                 raise ValueError(f"{info.filename} of {info.file_size} bytes")
         return {info.filename.removesuffix(".npy"): archive.read(info) for info in infos}
 
 
 def _array(content: bytes, kind: str, dimensions: int) -> Array:
-    """The array of one part, of a type and with as many dimensions; its bytes are as many as its shape says."""
+    """The array of one part, after a check of its type, its number of dimensions, and its number of bytes."""
     stream = io.BytesIO(content)
     if np.lib.format.read_magic(stream) != (1, 0):
         raise ValueError("an array of another format")
@@ -166,7 +166,7 @@ def _array(content: bytes, kind: str, dimensions: int) -> Array:
 
 
 def _of_kind(key: str, value: object, kind: type) -> Any:
-    """A value of the header, which is of a kind itself or, of a float, a whole number."""
+    """A value of the header, after a check of its type. A whole number is accepted for a float."""
     if isinstance(value, bool) == (kind is bool) and isinstance(value, (int, float) if kind is float else kind):
         number = kind(value)
         if kind is not float or math.isfinite(number):

@@ -1,7 +1,7 @@
-"""The largest region of a family over which a margin is proved, here a cylinder by its radius.
+"""The largest cylinder of a family over which a margin is proved.
 
-A lower bound of what holds: beyond it the claim fails, or was not proved with the boxes allowed. `certified_cells` has
-the cells of a section.
+It is a lower bound of the true region: in a larger cylinder the claim fails, or was not proved with the allowed boxes.
+`certified_cells` proves the cells of a section.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from kinematics import Array, FviBounds, InvalidValue, Mechanism, Value, bisecte
 
 @dataclass(frozen=True, eq=False)
 class CertifiedRegion(Value):
-    """What is proved of a family of regions.
+    """The proved part of a family of regions.
 
     Attributes:
         margin, at_least: the claim.
-        certificates: proofs whose regions together are the certified one; none where nothing is proved.
-        boxes: how many boxes were bounded, those of attempts that came to nothing included.
+        certificates: proofs; their regions together are the certified region. Empty if nothing is proved.
+        boxes: the number of boxes that were bounded, including those of failed attempts.
         left: (k, 2, n) lower and upper bounds of boxes that were neither proved nor refuted.
-        complete: whether the search came to its end; not where its time ran out.
+        complete: whether the search finished before its time ended.
         seconds: wall-clock time.
     """
 
@@ -41,7 +41,7 @@ class CertifiedRegion(Value):
 
     @property
     def radius(self) -> float:
-        """Of the largest proved cylinder [m]; 0 where none is."""
+        """The radius of the largest proved cylinder [m]; 0 if none is proved."""
         radii = [c.region.radius for c in self.certificates if isinstance(c.region, Cylinder)]
         return max(radii, default=0.0)
 
@@ -51,7 +51,7 @@ class CertifiedRegion(Value):
         return np.array(bounds).reshape(-1, 2, 2).swapaxes(1, 2)
 
     def area(self, axes: tuple[str, str]) -> float:
-        """Of the proved cells in the plane of two coordinates, which do not overlap."""
+        """The area of the proved cells in the plane of two coordinates. Cells do not overlap."""
         cells = self.cells(axes)
         return float((cells[:, 1] - cells[:, 0]).prod(axis=1).sum())
 
@@ -68,19 +68,19 @@ def certified_cylinder(
     most_boxes: int = MOST_BOXES,
     seconds: float = math.inf,
 ) -> CertifiedRegion:
-    """The largest radius, to a tolerance, up to the region's, with which the margin is proved; by bisection.
+    """The largest radius for which the margin is proved, to a tolerance, by bisection up to the region's radius.
 
-    A smaller cylinder lies inside a larger one, so what is proved of one holds in all smaller ones.
+    A smaller cylinder is inside a larger one, so a proof for one cylinder holds in all smaller ones.
 
     Args:
         robot: the mechanism with its geometry.
-        region: the largest cylinder of the family; its other coordinates hold for all.
+        region: the largest cylinder of the family. The bounds of its other coordinates are the same for all cylinders.
         margin, at_least, bounds, characteristic_length, most_boxes: as in `certify`, for each radius.
-        tolerance: of the radius [m]; a thousandth of the region's by default.
-        seconds: for all radii together; a single one gets half of what is left.
+        tolerance: tolerance of the radius [m]; by default a thousandth of the region's radius.
+        seconds: for all radii together. One radius gets half of the time that is left.
 
     Raises:
-        InvalidRegion, InvalidValue: see `certify`; or a tolerance not above 0 or finer than doubles.
+        InvalidRegion, InvalidValue: see `certify`; or the tolerance is not above 0, or finer than doubles.
     """
     tolerance = positive("tolerance", region.radius / 1000.0 if tolerance is None else tolerance)
     if tolerance < (finest := float(np.spacing(region.radius))):
@@ -91,7 +91,7 @@ def certified_cylinder(
     left = np.empty((0, 2, len(robot.pose_names)))
 
     def proved(radius: Array | float) -> bool:
-        """Whether the cylinder of a radius is proved; where the time has run out, nothing is tried any more."""
+        """Whether the cylinder of a radius is proved. When the time is used up, nothing more is tried."""
         nonlocal boxes, left, complete
         if budget.spent:
             complete = False

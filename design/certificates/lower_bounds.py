@@ -1,9 +1,10 @@
 """Rigorous lower bounds of the claims over boxes of poses.
 
-Two enclosures of each claim f over a box X with midpoint m: the natural one, and the centred form
-f(m) + G(X) (X - m) with the gradient's enclosure G. The centred form holds because finite natural bounds say that f is
-defined on all of the box, and G encloses every gradient on it. It is used only where whatever f branches on is decided
-on the box: f is then smooth, or has a kink (|x|, min) that G spans. All of it is rounded outward.
+Each claim f over a box X with midpoint m is bounded in two ways: by interval arithmetic, and by the centred form
+f(m) + G(X) (X - m), where G encloses the gradient. The centred form is valid because finite bounds of the first kind
+show that f is defined on the whole box, and G contains every gradient there. It is used only if each condition that f
+branches on has one value on the box. Then f is smooth, or has a kink (|x|, min) whose gradients G contains. All bounds
+are rounded outward.
 """
 
 from __future__ import annotations
@@ -25,16 +26,16 @@ from kinematics import (
     run_through,
 )
 
-_UP = 1.0 + 2.0**-48  # covers the roundings of products and of their sum over fewer than ten coordinates
+_UP = 1.0 + 2.0**-48  # covers the rounding of products and of their sum over fewer than ten coordinates
 _TINY = 1e-300
 
 
 class LowerBounds:
-    """The claims of one margin and bound over boxes of a region.
+    """Lower bounds of the claims of one statement over boxes of a region.
 
     Attributes:
-        statement: what the claims come from.
-        free: which pose coordinates are not fixed by the region; boxes may be split along these.
+        statement: the statement that the claims belong to.
+        free: the pose coordinates that the region does not fix. Boxes may be cut across these.
     """
 
     def __init__(self, statement: Statement, region: Region) -> None:
@@ -54,17 +55,17 @@ class LowerBounds:
         conditions = _conditions(self._rows.symbols, claims.expressions)
         self._with_gradient = self._rows.program(claims.expressions, gradient, conditions)
         self._plain = self._rows.program(claims.expressions)
-        self._slopes = self._count * (1 + self.free.size)  # where the conditions start
+        self._slopes = self._count * (1 + self.free.size)  # the place where the conditions start
 
     def lowest(self, low: Array, high: Array) -> tuple[Array, Array]:
-        """Lower bounds and where to split.
+        """Lower bounds, and how much each coordinate widens them.
 
         Args:
             low, high: (k, n) boxes.
 
         Returns:
-            (k,) lower bound of the smallest claim, and (k, free) how much of the open claims' spread each coordinate
-            makes; infinite where it is unknown.
+            (k,) lower bound of the smallest claim, and (k, free) the share of each coordinate in the width of the
+            undecided claims' bounds; infinite if it is unknown.
         """
         middle = np.clip(0.5 * low + 0.5 * high, low, high)
         scaling = self._rows.scaling(middle)
@@ -83,7 +84,7 @@ class LowerBounds:
         return lowest, spread
 
     def axis(self, low: Array, high: Array, spread: Array) -> Array:
-        """(k,) the coordinate to cut: the largest spread, or the widest part of the region where that is unknown."""
+        """(k,) the coordinate to cut: that of the largest share, or if it is unknown, that of the widest side."""
         if not self.free.size:
             return np.zeros(len(low), dtype=np.int64)
         unknown = ~np.isfinite(spread).all(axis=1) | (spread == 0.0).all(axis=1)
@@ -93,7 +94,7 @@ class LowerBounds:
 
 
 def _conditions(symbols: list[ca.SX], expressions: ca.SX) -> ca.SX:
-    """(k,) all that the expressions branch on or jump with: 0 or 1, or a sign."""
+    """(k,) all conditions at which the expressions branch or jump: 0 or 1, or a sign."""
     found: list[ca.SX] = []
 
     def noted(condition: ca.SX) -> ca.SX:
@@ -121,7 +122,7 @@ def _conditions(symbols: list[ca.SX], expressions: ca.SX) -> ca.SX:
 
 @numba.njit(nogil=True, cache=True, error_model="numpy")
 def _combine(count, natural, highest, decided, point, reach, lowest, spread):  # type: ignore[no-untyped-def]
-    """Centred form of each claim, rounded outward; its smallest lower bound and the open claims' spread."""
+    """Centred form of each claim, rounded outward; the smallest lower bound, and the undecided claims' width."""
     n = reach.shape[1]
     for i in range(natural.shape[0]):
         least = np.inf
@@ -133,7 +134,7 @@ def _combine(count, natural, highest, decided, point, reach, lowest, spread):  #
                 for k in range(n):
                     j = count + c * n + k
                     loss += max(abs(natural[i, j]), abs(highest[i, j])) * reach[i, k]
-                # Finite natural bounds: the claim is defined on all of the box.
+                # The bounds are finite, so the claim is defined on the whole box.
                 if decided[i] and width - width == 0.0 and loss - loss == 0.0:
                     centred = point[i, c] - (loss * _UP + _TINY)
                     best = max(best, centred - abs(centred) * 2.0**-52 - _TINY)

@@ -1,7 +1,7 @@
-"""Expressions as sums of products with exact coefficients: equal forms are equal functions.
+"""Expressions as sums of products with exact coefficients. Equal forms are equal functions.
 
-Sines, roots, quotients and so on are atoms named by their operands' forms. Only what holds for all real numbers is
-used: sums and products are expanded, sin(-x) = -sin x, cos(-x) = cos x, |-x| = |x|. No quotient is cancelled.
+A sine, a root, a quotient and so on is an atom: an unknown that is named by its operands' forms. All rules hold for all
+real numbers: sums and products are expanded, sin(-x) = -sin x, cos(-x) = cos x, |-x| = |x|. No quotient is cancelled.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ import numpy as np
 
 from kinematics import LinkwrightError, Op, Program, run_through
 
-_MOST_TERMS = 2000  # of a form; beyond, expanding is no way to compare
-Monomial = tuple[Hashable, ...]  # atoms in order, repeated where squared
+_MOST_TERMS = 2000  # of a form; with more terms the comparison would take too long
+Monomial = tuple[Hashable, ...]  # atoms in order; a squared atom is there twice
 
 
 class NoForm(LinkwrightError):
@@ -24,7 +24,7 @@ class NoForm(LinkwrightError):
 
 
 class Form:
-    """A sum of monomials; immutable."""
+    """A sum of monomials. It is immutable."""
 
     def __init__(self, terms: dict[Monomial, Fraction]) -> None:
         self._terms = {monomial: factor for monomial, factor in terms.items() if factor}
@@ -34,12 +34,12 @@ class Form:
 
     @classmethod
     def of(cls, value: Form | float) -> Form:
-        """A number becomes its exact value."""
+        """The form of a number is its exact value."""
         return value if isinstance(value, Form) else cls({(): Fraction(value)})
 
     @classmethod
     def atom(cls, name: Hashable) -> Form:
-        """One unknown."""
+        """The form of one unknown."""
         return cls({(name,): Fraction(1)})
 
     def __eq__(self, other: object) -> bool:
@@ -66,15 +66,15 @@ class Form:
         return Form(terms)
 
     def signed(self) -> tuple[int, Form]:
-        """+-1 and a form with one of two opposite ones chosen."""
+        """+1 or -1, and a form: of two opposite forms always the same one, so that their product is this form."""
         return (-1, -self) if self.key and self.key[0][1] < 0 else (1, self)
 
 
 def forms(symbols: list[ca.SX], expressions: ca.SX, inputs: list[Form]) -> tuple[list[Form], set[Form]]:
-    """Forms of the entries, row by row, with the inputs in the symbols' place; and all that must be defined for them.
+    """Forms of the entries, row by row, with the inputs instead of the symbols; and all forms that must be defined.
 
     Raises:
-        NoForm: as it says.
+        NoForm: an entry has no such form.
     """
     partial: set[Form] = set()
     program = Program.of(ca.Function("form", symbols, [ca.densify(expressions)]))

@@ -1,6 +1,6 @@
-"""Poses at which a statement is false beyond rounding: shown in interval arithmetic, not by plain numbers.
+"""Poses at which a statement is false by more than rounding. Interval arithmetic shows it.
 
-Plain evaluation only chooses which poses are tried.
+Plain evaluation only chooses the poses that are tried.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from design.claims import Statement
 from design.regions import Region
 from kinematics import Array, ClaimSymbols, Value, enclose
 
-_MOST = 1024  # poses that are tried at once, the lowest first
+_MOST = 1024  # poses that are tried together, the lowest first
 
 
 @dataclass(frozen=True, eq=False)
 class Refutation(Value):
-    """A pose (n,) of the region where the margin is below the bound, or that a limb cannot reach."""
+    """A pose (n,) of the region where the margin is below the bound, or where a limb cannot reach."""
 
     pose: Array
     within_reach: bool
 
 
 class Refuter:
-    """Of one statement."""
+    """Finds poses that refute one statement."""
 
     def __init__(self, statement: Statement) -> None:
         self.statement = statement
@@ -40,7 +40,7 @@ class Refuter:
         self._rows = self._scaled.program(ca.vertcat(reach, shown.expressions))
 
     def refutation(self, region: Region, poses: Array) -> Refutation | None:
-        """The worst of the poses (k, n) that lie in the region and are shown to refute; None where none is."""
+        """The worst of the poses (k, n) that are in the region and are shown to refute; None if there is none."""
         poses = poses[region.contains(poses, self.statement.robot.pose_names)]
         values = self.statement.value(poses)
         failing = np.flatnonzero(~(values >= self.statement.at_least))

@@ -1,6 +1,6 @@
-"""Check a certificate again, without its maker: the boxes cover the region, and each of them is proved.
+"""Check a certificate again, without the search that made it: the boxes cover the region, and each is proved.
 
-Only the leaves are bounded and nothing is searched, so this takes about half of the time that the proof took.
+Only the leaves are bounded and nothing is searched, so this takes about half of the time of the proof.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from design.errors import BrokenCertificate, OtherCertificate
 from design.regions import Region
 from kinematics import Array, FviBounds, Mechanism
 
-_CUTS = 2  # a box that only just passed may need a cut where another library rounds its scaling differently
+_CUTS = 2  # a box that was just proved may need a cut if another library rounds its scaling differently
 
 
 def replay(
@@ -32,17 +32,17 @@ def replay(
     """Check the answer of a certificate for this robot.
 
     Args:
-        region, margin, at_least, bounds, characteristic_length: what it must be made for, where given; a higher bound
-            than asked is accepted.
+        region, margin, at_least, bounds, characteristic_length: the question that it must answer, as far as given. A
+            certificate of a higher bound is accepted.
 
     Returns:
-        How many boxes were bounded again; 1 for the pose of a refutation.
+        The number of boxes that were bounded again; 1 for the pose of a refutation.
 
     Raises:
-        OtherCertificate: another mechanism, geometry, joint range, working mode, version, edition, region, margin, FVI
-            bounds or length, or a lower bound.
-        BrokenCertificate: its boxes do not cover the region, are not as many as it says, or one is not proved; its pose
-            does not refute; or it decides nothing.
+        OtherCertificate: it is for another mechanism, geometry, joint range, working mode, version, edition, region,
+            margin, FVI bounds or length, or for a lower bound.
+        BrokenCertificate: its boxes do not cover the region, their number is wrong, or one is not proved; its pose does
+            not refute the claim; or it is undecided.
     """
     _same("mechanism", certificate.mechanism, type(robot).__name__)
     _same("geometry", certificate.digest, robot.geometry.digest)
@@ -63,7 +63,7 @@ def replay(
         return _replay_proof(certificate, robot)
     if certificate.status == "refuted" and certificate.counterexample is not None:
         return _replay_refutation(certificate, robot, certificate.counterexample)
-    raise BrokenCertificate(f"its status {certificate.status!r} decides nothing")
+    raise BrokenCertificate(f"its status is {certificate.status!r}, so it decides nothing")
 
 
 def _same(what: str, found: object, expected: object) -> None:
@@ -83,10 +83,10 @@ def _replay_proof(certificate: Certificate, robot: Mechanism) -> int:
         raise BrokenCertificate(f"it relies on the mirrors {mirrors}; shown to hold: {shown}")
     for code, low, high in leaves(certificate.codes, *one_side(*root(region, names), mirrors, names)):
         if (code == LEFT).any():
-            raise BrokenCertificate("a box is left open", low[code == LEFT][0])
+            raise BrokenCertificate("a box is undecided", low[code == LEFT][0])
         off = code == OUTSIDE
         if not outside(region, low[off], high[off], names).all():
-            raise BrokenCertificate("a box that it calls outside is not", low[off][0])
+            raise BrokenCertificate("a box that it calls outside the region is not outside", low[off][0])
         low, high = low[~off], high[~off]
         for cuts in range(_CUTS + 1):
             lowest, spread = lower.lowest(low, high)

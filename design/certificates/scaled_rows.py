@@ -1,4 +1,4 @@
-"""Rows of a statement with all its numbers in place, and the scaling that belongs to each pose."""
+"""Programs of a statement's expressions with all numbers filled in, and the scaling at each pose."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from kinematics import Array, BoxProgram, ClaimSymbols, Program, ToShow, bulk, e
 
 
 class ScaledRows:
-    """Makes programs of the pose and the scaling from expressions in a model's and a claim's symbols.
+    """Makes programs of pose and scaling from expressions in the symbols of a model and a claim.
 
     Attributes:
-        symbols: pose, scaling, geometry, the claim's numbers; the last two are fixed.
+        symbols: pose, scaling, geometry, the claim's numbers. The last two have fixed values.
     """
 
     def __init__(self, statement: Statement, claim: ClaimSymbols, shown: ToShow) -> None:
@@ -27,7 +27,7 @@ class ScaledRows:
             self._matrix = bulk(ca.Function("matrix", [model.pose], [ca.densify(matrix)]))
 
     def program(self, *outputs: ca.SX) -> BoxProgram:
-        """Of boxes, with the numbers of `scaling` beside their bounds."""
+        """A program over boxes of poses; it also takes the numbers of `scaling`."""
         function = ca.Function("rows", self.symbols, ca.cse([ca.densify(o) for o in outputs]))
         return BoxProgram.of(Program.of(function), self._fixed)
 

@@ -1,13 +1,14 @@
-"""Mirrors: a region that a mirror maps onto itself needs to be proved on one side only.
+"""Mirrors: if a mirror maps a region onto itself, a proof on one side is enough.
 
-A mechanism names, in `mirrors`, coordinates whose signs may be changed together. It is not believed: a mirror is used
-only where the Jacobians are shown to be the same on both sides but for the limbs' order and signs,
+A mechanism names, in `mirrors`, coordinates whose signs may change together. This is checked: a mirror is used only if
+the Jacobians are shown to be the same on both sides, except for the limbs' order and signs,
 
     J_x(D pose) = P J_x(pose) D    and    |J_q(D pose)| = P' |J_q(pose)|,
 
-with D = diag(+-1), P a permutation with signs and P' without, entry by entry as exact forms in pose and geometry. The
-margins made of the Jacobians are then equal: P and D, which is diagonal like the scaling of the rotations, are
-orthogonal, so lengths of rows, volumes, and lengths of the pseudo-inverse's columns stay, in another order.
+with D = diag(+-1), P a permutation with signs and P' the same without signs. Each entry is compared as an exact form in
+pose and geometry. Margins of the Jacobians are then equal. P and D are orthogonal, and D is diagonal, as is the scaling
+of the rotations. So the lengths of rows, volumes, and the lengths of the pseudo-inverse's columns stay, in another
+order.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ Mirrors = tuple[tuple[str, ...], ...]
 
 
 def mirrors_of(robot: Mechanism, region: Region, margin: str) -> Mirrors:
-    """The robot's mirrors that keep the region and are shown to keep the margin; the first name of each is halved."""
+    """The mirrors that keep the region and are shown to keep the margin. The first coordinate of each is halved."""
     if not robot.margins[margin].of_jacobians:
         return ()
     kept = [names for names in robot.mirrors if _keeps(region, names) and _holds(type(robot), robot.model(), names)]
@@ -33,7 +34,7 @@ def mirrors_of(robot: Mechanism, region: Region, margin: str) -> Mirrors:
 
 
 def one_side(low: Array, high: Array, mirrors: Mirrors, names: tuple[str, ...]) -> tuple[Array, Array]:
-    """(1, n) bounds with the first coordinate of each mirror from 0 up."""
+    """(1, n) bounds where the first coordinate of each mirror is at least 0."""
     low = low.copy()
     for mirror in mirrors:
         low[:, names.index(mirror[0])] = 0.0
@@ -41,14 +42,14 @@ def one_side(low: Array, high: Array, mirrors: Mirrors, names: tuple[str, ...]) 
 
 
 def _keeps(region: Region, names: tuple[str, ...]) -> bool:
-    """Whether it is its own image: boxes and cylinders are, where their intervals are."""
+    """Whether the mirror maps the region onto itself: true if the intervals of these coordinates are symmetric."""
     intervals = [region.intervals[name] for name in names]
     return all(low == -high for low, high in intervals) and intervals[0][1] > 0.0
 
 
 @lru_cache(maxsize=64)
 def _holds(robot: type[Mechanism], model: Model, names: tuple[str, ...]) -> bool:
-    """For every geometry, as this stands for symbols."""
+    """Whether the mirror holds for every geometry; the geometry is symbolic."""
     if not model.drives.is_eye() or len(robot.pose_names) != model.j_x_at_pose.shape[1]:
         return False
     signs = [-1 if name in names else 1 for name in robot.pose_names]
@@ -73,7 +74,7 @@ def _holds(robot: type[Mechanism], model: Model, names: tuple[str, ...]) -> bool
 
 
 def _matched(here: list[list[Form]], there: list[list[Form]], signs: list[int]) -> bool:
-    """Whether each row [J_x, J_q, scale] there is one of those here, mirrored."""
+    """Whether each row [J_x, J_q, scale] of `there` is the mirror image of a row of `here`."""
     left = list(here)
     for row in there:
         match = next((i for i, other in enumerate(left) if _mirrored(other, row, signs)), None)

@@ -1,4 +1,4 @@
-"""What has to be shown for a margin to be at least a bound."""
+"""The claims behind "a margin is at least a bound": expressions that must be at least 0."""
 
 from design.claims.reaching import reach_rows
 from design.claims.statement import Statement

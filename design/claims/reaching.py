@@ -1,8 +1,9 @@
-"""That every limb reaches, claimed beside every margin: some margins look at a few limbs only, or at none.
+"""The claim that every limb can reach, which belongs to every margin: some margins depend on few limbs, or on none.
 
-A limb whose inverse model has no value cannot reach. A claim whose expressions hold all that this limb's inverse model
-needs in order to have a value (the same root of the same number) is never shown where it has none. Which limbs that
-leaves is read off the expressions, so no mechanism and no margin can forget one; their reach is claimed beside it.
+If the inverse model of a limb has no value, the limb cannot reach. Some claims need everything that a limb's inverse
+model needs to have a value (the same root of the same number), so they can hold only where this limb reaches. This
+module finds the other limbs from the expressions, so no mechanism and no margin can forget one. The reach of these
+limbs is claimed too.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 from kinematics import Mechanism, Op, Program, run_through, sides
 
 _LOADS = {Op.CONST, Op.INPUT, Op.OUTPUT}
-# Defined for all real operands, or at least a number wherever the operands are.
+# These operations are defined wherever their operands are.
 _ALWAYS = {Op.ADD, Op.SUB, Op.MUL, Op.SQ, Op.NEG, Op.TWICE, Op.SIN, Op.COS, Op.ASSIGN, Op.LT, Op.LE, Op.NOT}
 _ALWAYS |= {Op.ATAN2, Op.ATAN, Op.FABS, Op.FMIN, Op.FMAX, Op.SIGN}
 
@@ -26,7 +27,7 @@ class _Value(NamedTuple):
 
     Attributes:
         name: equal for the same operation on the same operands.
-        needs: names of the values that must be defined for this one to be.
+        needs: names of the values that must be defined so that this one is defined.
     """
 
     name: int
@@ -34,17 +35,17 @@ class _Value(NamedTuple):
 
 
 def reach_rows(robot: Mechanism, expressions: ca.SX) -> ca.SX:
-    """(k,) expressions in the model's symbols, at least 0 where the limbs reach that `expressions` do not need."""
+    """(k,) expressions in the model's symbols: at least 0 where those limbs reach that `expressions` do not need."""
     model = robot.model()
     reach = robot.reach(model.pose, model.g)
     left = _limbs_not_needed(expressions, model.inverse)
-    if left and reach.numel() != model.inverse.numel():  # limbs of two drives each
+    if left and reach.numel() != model.inverse.numel():  # each limb has two drives
         left = list(range(reach.numel()))
     return ca.vertcat(*(side for limb in left for side in sides(reach[limb])))
 
 
 def _limbs_not_needed(expressions: ca.SX, inverse: ca.SX) -> list[int]:
-    """The rows of the inverse model that may have no value where all expressions have one."""
+    """The rows of the inverse model that may lack a value where all expressions have one."""
     both = ca.densify(ca.vertcat(expressions, inverse))
     names: dict[Hashable, int] = {}
 
@@ -61,7 +62,7 @@ def _limbs_not_needed(expressions: ca.SX, inverse: ca.SX) -> list[int]:
         def of(left: _Value | float, right: _Value | float) -> _Value:
             a, b = valued(left), valued(right)
             name = named((op, a.name, b.name))
-            if op is Op.IF_ELSE_ZERO:  # what the condition leaves aside may be undefined
+            if op is Op.IF_ELSE_ZERO:  # the branch that is not taken may be undefined
                 return _Value(name, a.needs | {name})
             return _Value(name, a.needs | b.needs | (frozenset() if op in _ALWAYS else {name}))
 

@@ -1,4 +1,4 @@
-"""What is proved or refuted of a region: a margin of a robot is at least a bound."""
+"""The statement that is proved or refuted: a margin of a robot is at least a bound."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from kinematics import Array, ClaimSymbols, FviBounds, InvalidValue, Mechanism, 
 
 @dataclass(frozen=True)
 class Statement:
-    """`margin` of `robot` >= `at_least`.
+    """The statement `margin` of `robot` >= `at_least`.
 
     Attributes:
         robot: the mechanism with its geometry and ranges.
@@ -20,7 +20,7 @@ class Statement:
         bounds, length: what the FVI is measured with; the characteristic length in metres.
 
     Raises:
-        InvalidValue: no such margin, a bound that is not finite, one of `reach` below 0, or a length that is not
+        InvalidValue: the margin is unknown, the bound is not finite or (for `reach`) below 0, or the length is not
             above 0.
     """
 
@@ -36,7 +36,9 @@ class Statement:
             raise InvalidValue(f"{type(self.robot).__name__} margin", self.margin, f"one of {known}")
         finite(f"at_least of {self.margin}", self.at_least, "a finite number, in the margin's unit")
         if self.margin == "reach" and self.at_least < 0.0:
-            raise InvalidValue("at_least of reach", self.at_least, "0 m or more: every claim claims reach itself")
+            raise InvalidValue(
+                "at_least of reach", self.at_least, "0 m or more, as every claim includes that the pose is in reach"
+            )
         positive("characteristic_length", self.length, "a finite length > 0 m")
 
     @classmethod
@@ -48,16 +50,16 @@ class Statement:
         bounds: FviBounds | None = None,
         characteristic_length: float | None = None,
     ) -> Statement:
-        """With the robot's own FVI bounds and length where none are given."""
+        """The statement; if no FVI bounds or length are given, the robot's own are used."""
         length = robot.characteristic_length if characteristic_length is None else characteristic_length
         return cls(robot, margin, at_least, bounds or robot.fvi_bounds, length)
 
     @property
     def numbers(self) -> list[float]:
-        """What `ClaimSymbols` stand for."""
+        """The values of `ClaimSymbols`."""
         return ClaimSymbols.values(self.at_least, self.bounds, self.length)
 
     def value(self, poses: Array) -> Array:
-        """(..., n) -> (...,) the margin in plain arithmetic; NaN where a limb cannot reach, of `reach` itself too."""
+        """(..., n) -> (...,) the margin in plain arithmetic; NaN where a limb cannot reach, even for `reach` itself."""
         values = self.robot.margin(self.margin, poses, self.bounds, self.length)
         return np.where(self.robot.margin("reach", poses) >= 0.0, values, np.nan)

@@ -1,4 +1,4 @@
-"""What has to be shown for a statement: what its margin asks (`Margin.to_show`), and that every limb reaches."""
+"""The claims of a statement: those of its margin (`Margin.to_show`), and that every limb can reach."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ def to_show(statement: Statement, claim: ClaimSymbols, inside: Array) -> ToShow:
     """Expressions that are all at least 0 on a region only if the statement holds on it.
 
     Args:
-        claim: symbols for the bound and what the FVI is measured with.
-        inside: (n,) a pose of the region, which gives the signs.
+        claim: symbols for the bound and for the numbers that the FVI is measured with.
+        inside: (n,) a pose of the region; it decides the signs.
     """
     margin = statement.robot.margins[statement.margin]
     shown = margin.to_show(statement.robot, claim, inside, statement.at_least > 0.0)

@@ -1,4 +1,4 @@
-"""Maps of an index over a section of a region, sampled and proved."""
+"""Maps of a margin over a section of a region, sampled and proved."""
 
 from design.maps.certified_cells import certified_cells
 from design.maps.level_sets import LevelSet, boundary, level_set

@@ -1,6 +1,6 @@
-"""The cells of a section over which a margin is proved: quarters, cut where the proof fails.
+"""The cells of a section over which a margin is proved. A cell whose proof fails is cut in four.
 
-A lower bound of what holds, as in `certified`.
+They are a lower bound of the true part, as in `largest_region`.
 """
 
 from __future__ import annotations
@@ -40,22 +40,22 @@ def certified_cells(
 ) -> CertifiedRegion:
     """The cells of a plane over which the margin is proved for all values of the other coordinates.
 
-    The plane is cut into quarters: a cell is tried where a map of its corners, and of those within it, finds nothing
-    below the bound; what is not proved is cut again, down to the smallest cells.
+    The plane is first cut in four. A cell is tried if a map finds no value below the bound at its corners and at the
+    nodes inside it. A cell that is not proved is cut in four again, down to the smallest cells.
 
     Args:
         robot: the mechanism with its geometry.
-        region: a box; its other coordinates hold as a whole for each cell.
+        region: a box. In each cell the other coordinates have their whole intervals.
         axes: the two coordinates of the plane.
         margin, at_least, bounds, characteristic_length: as in `certify`.
-        depth: the smallest cells are the region's sides over 2^depth.
-        most_boxes: of each attempt.
-        seconds: of all; the largest cells come first, and cells that are not reached in time are not proved.
+        depth: the sides of the smallest cells are the region's sides over 2^depth.
+        most_boxes: the most boxes for each cell.
+        seconds: time for all cells. The largest cells come first. Cells that are not tried in time are not proved.
 
     Raises:
         InvalidRegion, InvalidValue: see `certify`.
         InvalidSection: see `Section.check`, or the region is not a box.
-        OutOfTime: the map itself takes longer.
+        OutOfTime: the map alone needs more time.
     """
     if not isinstance(region, Box):
         raise InvalidSection("cells", repr(region), "a Box; a Cylinder has `certified_cylinder`")
@@ -71,8 +71,8 @@ def certified_cells(
 def _proofs(
     lower: LowerBounds, chart: Map, size: int, most_boxes: int, budget: Budget
 ) -> tuple[list[Certificate], int, Array, bool]:
-    """The proved cells of a chart of `size` by `size`, the boxes bounded, those left of smallest cells, and whether
-    all cells were tried.
+    """Returns the proved cells of a chart of `size` by `size` cells, the number of boxes bounded, the boxes left in the
+    smallest cells, and whether all cells were tried.
     """
     holds, refuter = chart.values >= lower.statement.at_least, Refuter(lower.statement)  # NaN does not hold
     cells, proved, left, boxes = deque([(0, 0, size)]), [], [np.empty((0, 2, chart.poses.shape[-1]))], 0

@@ -1,9 +1,9 @@
-"""The part of a map where an index is at least a bound: its area, the index's mean and deviation over it, its boundary.
+"""The level set: the part of a map where an index is at least a bound. Its area, boundary, mean and deviation.
 
-The map is taken as linear over the four triangles that each cell makes with its middle; the triangles are cut exactly
-at the bound and at a curved boundary of the region, and integrated exactly. What remains is the error of that
-interpolation, which falls with the square of the step; the grid is refined until no figure moves by more than a
-tolerance, and, where that area is as good as none, to the finest, and then close around the part.
+Each cell and its middle make four triangles. The map is taken as linear over each triangle. The triangles are cut
+exactly at the bound and at a curved boundary of the region, and integrated exactly. The only error is that of this
+interpolation; it falls with the square of the step. The grid is refined until no figure changes by more than a
+tolerance. If the area is almost zero, the grid is refined to the finest, and then a grid close around the part is used.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ class Integrals:
     """Area-weighted figures over the part of a section where the index is at least a bound.
 
     Attributes:
-        area: [m^2; m rad or rad^2 where angles are on the axes].
-        mean, deviation: of the index over that area; NaN where there is none.
+        area: [m^2; m rad or rad^2 if angles are on the axes].
+        mean, deviation: of the index over that area; NaN if the area is 0.
     """
 
     area: float
@@ -43,7 +43,7 @@ class Integrals:
     deviation: float
 
     def moved(self, other: Integrals, whole: float) -> float:
-        """The largest change of a figure: the area's over the whole plane's, the others' over the larger of both."""
+        """The largest relative change of a figure: the area over the whole plane, others over the larger value."""
         if math.isnan(self.mean) or math.isnan(other.mean):
             return 0.0 if self.area == other.area else math.inf  # both empty, or one of them
         level = max(abs(self.mean), self.deviation) or 1.0
@@ -53,16 +53,16 @@ class Integrals:
 
 @dataclass(frozen=True)
 class LevelSet:
-    """Where an index is at least a bound (at most, for one that is better the smaller).
+    """The part where an index is at least a bound (at most, for an index that should be small).
 
     Attributes:
-        map: the finest one, which the rest is from; close around a part that is small beside the plane.
+        map: the finest map, which all else comes from. If the part is small, the map is close around it.
         bound: in the index's unit; None takes all that is in reach.
-        figures: of the finest map.
-        coarser: of the map with half as many steps; the difference is what the figures moved by last. NaN where time
-            was for one map only.
-        moved: the largest change of a figure then, see `Integrals.moved`.
-        tolerance: what was asked of it.
+        figures: those of the finest map.
+        coarser: those of the map with half as many steps, to show the last change. NaN if there was time for only one
+            map.
+        moved: the largest change between the two, see `Integrals.moved`.
+        tolerance: the change that was allowed.
     """
 
     map: Map
@@ -74,18 +74,18 @@ class LevelSet:
 
     @property
     def settled(self) -> bool:
-        """Whether the figures stood still; where not, they are the finest grid's, and may be far off."""
+        """Whether the figures changed by no more than the tolerance. If not, they may be far off."""
         return self.moved <= self.tolerance
 
     @property
     def whole(self) -> float:
-        """Area of the map [m^2; m rad or rad^2 where angles are on the axes]."""
+        """Area of the map [m^2; m rad or rad^2 if angles are on the axes]."""
         first, second = self.map.first, self.map.second
         return float((first[-1] - first[0]) * (second[-1] - second[0]))
 
     @property
     def step(self) -> tuple[float, float]:
-        """Between nodes along both axes [m or rad]; a part that is narrower may have been missed."""
+        """Distance between nodes along both axes [m or rad]. The map may miss a narrower part."""
         first, second = self.map.first, self.map.second
         return float(first[1] - first[0]), float(second[1] - second[0])
 
@@ -103,24 +103,25 @@ def level_set(
     tolerance: float = TOLERANCE,
     seconds: float = math.inf,
 ) -> LevelSet:
-    """Map an index on ever finer grids until area, mean and deviation stand still; see `LevelSet.settled`.
+    """Map an index on finer and finer grids until area, mean and deviation stop changing; see `LevelSet.settled`.
 
-    Where an area is within the tolerance of 0 on the finest grid, the part that a few nodes saw, or that climbing from
-    the best nodes finds between them, is mapped on grids of its own. An area of 0 is what all this saw: see
-    `LevelSet.step`.
+    If the area on the finest grid is 0 to the tolerance, a part may still be found at a few nodes, or between nodes by
+    a search that starts from the best ones. This part is then mapped on its own grids. An area of 0 means that no part
+    was
+    found: see `LevelSet.step`.
 
     Args:
-        index: of `index_of`.
+        index: an index from `index_of`.
         section: the plane.
         names: the robot's `pose_names`.
-        bound: the index is to be at least this (at most, where smaller is better); None: in reach is enough.
-        tolerance: the area may move by this part of the map's, mean and deviation by this part of the larger one.
-        seconds: after so many the finest map that is complete is the last.
+        bound: the index should be at least this (at most, if it should be small); None takes all that is in reach.
+        tolerance: the allowed change: of the area over the map's area, of mean and deviation over the larger value.
+        seconds: after so much time, the finest complete map is used.
 
     Raises:
         InvalidRegion, InvalidSection: see `Section.check`.
-        InvalidValue: a bound that is not finite, or a tolerance or a time not above 0.
-        OutOfTime: not even the coarsest map was complete.
+        InvalidValue: the bound is not finite, or the tolerance or the time is not above 0.
+        OutOfTime: the time ended before the coarsest map was complete.
     """
     bound = None if bound is None else finite("bound", bound)
     if math.isfinite(index.least):
@@ -145,7 +146,7 @@ def _refined(
     budget: Budget,
     window: Window,
 ) -> LevelSet:
-    """`level_set` within a window, whose area is the one that counts."""
+    """`level_set` within a window. Changes of the area are relative to the window's area."""
     whole = math.prod(high - low for low, high in window)
     none = Integrals(math.nan, math.nan, math.nan)
     count, found = COARSEST, None
@@ -202,7 +203,7 @@ def boundary(chart: Map, bound: float | None) -> list[Array]:
 
 
 def _triangles(chart: Map) -> Array:
-    """(t, 3, 4) vertices (first, second, value, inset); those with a vertex out of reach are left out."""
+    """(t, 3, 4) vertices (first, second, value, inset). Triangles with a vertex out of reach are left out."""
     first, second = np.meshgrid(chart.first, chart.second)
     inset = np.where(np.isinf(chart.inset), 1.0, chart.inset)
     nodes = np.stack([first, second, chart.values, inset], axis=-1)
@@ -233,7 +234,7 @@ def _clipped(triangles: Array, column: int, level: float) -> Array:
 
 
 def _cut(a: Array, b: Array, column: int, level: float) -> Array:
-    """(s, 4) where the edges from a to b cross the level."""
+    """(s, 4) the points where the edges from a to b cross the level."""
     share = (level - a[:, column]) / (b[:, column] - a[:, column])
     result: Array = a + share[:, None] * (b - a)
     return result

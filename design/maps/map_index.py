@@ -1,4 +1,4 @@
-"""What is mapped: a margin of a robot, measured in one way."""
+"""The number that is mapped: a margin of a robot, with the data that it is measured with."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from kinematics import Array, FviBounds, Mechanism, Value
 
 @dataclass(frozen=True, eq=False)
 class Index(Value):
-    """A number at each pose, the larger the better.
+    """A number at each pose; a larger number is better.
 
     Attributes:
-        name: of the margin.
-        unit: of its numbers; empty where it has none.
-        words: what it is, for people.
+        name: the margin's name.
+        unit: the unit of its numbers; empty if there is none.
+        words: a description for people.
         value: (..., n) poses -> (...,), NaN out of reach.
-        least: a value that every pose within reach keeps; -inf where NaN alone tells which these are.
+        least: a lower bound of the value at every pose in reach; -inf if only NaN marks poses out of reach.
     """
 
     name: str
@@ -37,7 +37,7 @@ class Index(Value):
 def index_of(
     robot: Mechanism, name: str, bounds: FviBounds | None = None, characteristic_length: float | None = None
 ) -> Index:
-    """A margin as an index.
+    """Make a margin into an index.
 
     Args:
         name: one of `robot.margins`.

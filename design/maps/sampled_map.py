@@ -1,7 +1,8 @@
-"""Maps: an index on a grid over a section, the worst over the coordinates that the section leaves open.
+"""Maps: the values of an index on a grid over a section, each the worst over the section's other coordinates.
 
-The worst is a dense grid's, followed downhill from its lowest local minima: an upper bound of the true one, close but
-not proved; for a proof see `certified`. Poses pass by in chunks, so memory is bounded by the map itself.
+The worst value comes from a dense grid and from descents that start at its lowest local minima. It is an upper bound of
+the true worst value, close but not proved. For proofs see `certified_cells`. Poses are made in chunks, so that memory
+holds little more than the map.
 """
 
 from __future__ import annotations
@@ -21,10 +22,10 @@ from design.maps.section import Section
 from design.sampling import descend
 from kinematics import Array, Value, whole
 
-REST = {0: 1, 1: 49, 2: 13, 3: 7, 4: 5}  # poses along each coordinate of the rest, by how many there are
+REST = {0: 1, 1: 49, 2: 13, 3: 7, 4: 5}  # number of other coordinates: poses along each of them
 Window = tuple[tuple[float, float], tuple[float, float]]  # lower and upper bound of both axes
-_MINIMA = 3  # local minima that are followed downhill
-_ROUNDS = 22  # of descent: halvings end at a millionth of the grid's step
+_MINIMA = 3  # local minima that a descent starts from
+_ROUNDS = 22  # rounds of a descent: its step ends near a millionth of the grid's step
 _CHUNK = 1 << 18  # poses
 
 
@@ -34,12 +35,13 @@ class Map(Value):
 
     Attributes:
         section: the plane.
-        index: its name.
+        index: the index's name.
         first, second: (a,), (b,) values of the two axes [m or rad].
-        values: (b, a) the worst at each node, NaN where some pose behind it is out of reach; also beyond a curved
-            boundary, where it continues the map.
-        poses: (b, a, n) where that is.
-        inset: (b, a) how far the node is inside a curved boundary of the region, negative beyond it [m]; inf: none.
+        values: (b, a) the worst value at each node; NaN if some pose of the node is out of reach. Nodes outside a
+            curved boundary have values too, so that the map can be interpolated up to it.
+        poses: (b, a, n) the pose with this value.
+        inset: (b, a) distance of the node inside a curved boundary of the region, negative outside [m]; inf without
+            one.
     """
 
     section: Section
@@ -52,7 +54,7 @@ class Map(Value):
 
     @property
     def lowest(self) -> tuple[float, Array]:
-        """Worst value of the nodes in the region and its pose (n,); -inf where one is out of reach."""
+        """Worst value of the nodes in the region and its pose (n,); -inf if one is out of reach."""
         good = np.where(np.isnan(self.values), -np.inf, self.values)
         row, column = np.unravel_index(int(np.where(self.inset >= 0.0, good, np.inf).argmin()), good.shape)
         return float(good[row, column]), self.poses[row, column]
@@ -73,14 +75,14 @@ def map_of(
         index: of `index_of`.
         section: the plane.
         names: the robot's `pose_names`.
-        counts: nodes along the two axes, 2 or more.
-        window: bounds of both axes, a part of the region's; these by default.
-        seconds: how long it may take.
+        counts: number of nodes along each of the two axes, 2 or more.
+        window: bounds of both axes, within the region's bounds; by default the region's bounds.
+        seconds: the time that the map may take [s].
 
     Raises:
         InvalidRegion, InvalidSection: see `Section.check`.
-        InvalidValue: a count below 2, or a time not above 0.
-        OutOfTime: it takes longer.
+        InvalidValue: a count is below 2, or the time is not above 0.
+        OutOfTime: the map needs more time.
     """
     section.check(names)
     first, second = (
@@ -95,7 +97,7 @@ def map_of(
 
 
 def window_of(section: Section) -> Window:
-    """Of the whole plane."""
+    """The window of the whole plane."""
     first, second = (section.region.intervals[name] for name in section.axes)
     return first, second
 
@@ -103,7 +105,7 @@ def window_of(section: Section) -> Window:
 def worst_behind(
     index: Index, section: Section, names: tuple[str, ...], points: Array, budget: Budget | None = None
 ) -> tuple[Array, Array]:
-    """The lowest goodness (k,) over all poses behind each point (k, 2), -inf out of reach, and its pose (k, n).
+    """The lowest goodness (k,) over all poses of each point (k, 2), -inf out of reach, and the pose (k, n) with it.
 
     Raises:
         OutOfTime: the budget is used up before the last point.
@@ -128,7 +130,7 @@ def worst_behind(
 def _worst(
     index: Index, section: Section, names: tuple[str, ...], points: Array, listed: Mapping[str, float], unit: Array
 ) -> tuple[Array, Array]:
-    """`worst_behind` of one chunk and one listed combination; unit (g, r) is the grid of the rest."""
+    """`worst_behind` for one chunk and one listed combination; unit (g, r) is the grid of the other coordinates."""
     count, rest = len(points), unit.shape[1]
 
     def poses_at(node: Array, where: Array) -> Array:
@@ -153,7 +155,7 @@ def _worst(
 
 
 def _local_minima(values: Array, unit: Array) -> tuple[Array, Array]:
-    """Of values (k, g) on the grid (g, r): rows (m,) and unit points (m, r) of each row's lowest local minima."""
+    """The lowest local minima of each row of values (k, g) on the grid (g, r): their rows (m,) and points (m, r)."""
     count, rest = len(values), unit.shape[1]
     each = round(values.shape[1] ** (1.0 / rest))
     grid = values.reshape(count, *(each,) * rest)

@@ -1,4 +1,4 @@
-"""A plane through a region: two pose coordinates on the axes, the others fixed, listed, or anywhere in the region."""
+"""A plane through a region: two pose coordinates are the axes; each other one has fixed values or its interval."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _ROUNDING = 1e-12  # relative to the largest number between the bounds
 
 @dataclass(frozen=True)
 class Section:
-    """Which poses stand behind each point of a map.
+    """The poses that belong to each point of a map.
 
     Attributes:
         region: bounds of all coordinates.
         axes: the two coordinates that are mapped.
-        at: values of others by name [m or rad]; of several the worst counts, as with the paper's nine angles. What is
-            neither here nor on an axis is worst over its whole interval.
+        at: values of other coordinates by name [m or rad]. Of several values the worst counts, as for the paper's nine
+            angles. For a coordinate that is neither here nor an axis, the worst over its whole interval counts.
     """
 
     region: Region
@@ -34,12 +34,12 @@ class Section:
         """Check the section against the robot's coordinates.
 
         Raises:
-            InvalidRegion: the region does not speak of them.
-            InvalidSection: an axis twice, unknown or fixed; a value outside the region; nothing left of the plane.
+            InvalidRegion: the region does not have these coordinates.
+            InvalidSection: an axis is given twice, unknown or fixed; a value is outside the region; the plane is empty.
         """
         self.region.check(names)
         if len(self.axes) != 2 or self.axes[0] == self.axes[1]:
-            raise InvalidSection("axes", ", ".join(self.axes), f"two different ones of {', '.join(names)}")
+            raise InvalidSection("axes", ", ".join(self.axes), f"two different coordinates of {', '.join(names)}")
         for name in self.axes:
             if name not in names:
                 raise InvalidSection("axes", name, f"one of {', '.join(names)}")
@@ -67,26 +67,26 @@ class Section:
                 raise InvalidSection(f"at {name}", f"{value:g}", f"a value in the region, {low:g} to {high:g}")
 
     def rest(self, names: Sequence[str]) -> list[str]:
-        """The coordinates over which the worst is sought."""
+        """The coordinates over which the worst value is searched."""
         return [n for n in names if n not in self.axes and n not in self.at and self.region.is_free(n)]
 
     def listed(self) -> list[dict[str, float]]:
-        """Every combination of the values in `at`; one empty one where there are none."""
+        """Every combination of the values in `at`; one empty combination if `at` is empty."""
         return [dict(zip(self.at, values, strict=True)) for values in product(*self.at.values())]
 
     def inset(self, points: Array) -> Array:
-        """(..., 2) -> (...,) how far points are inside the region's curved boundary [m], with all listed values."""
+        """(..., 2) -> (...,) distance of points inside the region's curved boundary [m], for all listed values."""
         plane = {name: points[..., i] for i, name in enumerate(self.axes)}
         every = [self.region.inset({**plane, **{n: np.asarray(v) for n, v in one.items()}}) for one in self.listed()]
         return np.broadcast_to(np.min(every, axis=0), points.shape[:-1])
 
     def poses(self, points: Array, listed: Mapping[str, float], unit: Array, names: Sequence[str]) -> Array:
-        """Poses behind points of the plane.
+        """Poses that belong to points of the plane.
 
         Args:
             points: (..., 2).
             listed: one of `listed()`.
-            unit: (..., k) in [0, 1], where in the region the rest is.
+            unit: (..., k) in [0, 1], the place of the other coordinates in the region.
 
         Returns:
             (..., n).

@@ -1,4 +1,4 @@
-"""A small part of a plane, of a few nodes of its finest map or between them: found, and then looked at closely."""
+"""Find a small part of a plane that a map shows at only a few nodes, or that is between its nodes."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from design.maps.section import Section
 from design.sampling import descend
 from kinematics import Array
 
-_CLIMBS = 16  # of the best nodes
-_NODES = 33  # of a look, along an axis
-_WIDE = 8  # nodes across the part: what a refinement can start from
-_LOOKS = 60  # each at least halves the window, so these reach the spacing of doubles
+_CLIMBS = 16  # number of best nodes that a climb starts from
+_NODES = 33  # nodes of each smaller map along an axis
+_WIDE = 8  # nodes across the part that a refinement needs
+_LOOKS = 60  # most smaller maps: each at least halves the window, so the last one reaches the spacing of doubles
 
 
 def window_of_part(
     index: Index, section: Section, names: tuple[str, ...], chart: Map, bound: float, budget: Budget
 ) -> Window | None:
-    """Bounds of both axes close around the part of a chart that keeps the bound, or that climbing finds between nodes.
+    """Bounds of both axes close around the part that keeps the bound: from nodes, or from a climb between nodes.
 
-    None where there is no such part, or none that is narrower than the chart.
+    None if there is no such part, or none that is narrower than the chart.
     """
     window = _around_seen(section, chart, bound)
     if window is None:
@@ -39,7 +39,7 @@ def window_of_part(
 def _around_point(
     index: Index, section: Section, names: tuple[str, ...], chart: Map, top: Array, least: float, budget: Budget
 ) -> Window | None:
-    """Smaller and smaller windows about a good point (2,) until one shows its part from one side to the other."""
+    """Take smaller and smaller windows about a good point (2,), until its part fills enough nodes of one."""
     half = 2.0 * np.array([chart.first[1] - chart.first[0], chart.second[1] - chart.second[0]])
     for _ in range(_LOOKS):
         window = _clipped(section, top - half, top + half)
@@ -56,7 +56,7 @@ def _around_point(
 
 
 def _around_seen(section: Section, chart: Map, least: float) -> Window | None:
-    """Of the nodes that keep the bound, with a step and a half around them; None where none does."""
+    """The window of the nodes that keep the bound, with a step and a half around them; None if no node does."""
     rows, columns = np.nonzero((chart.values >= least) & (chart.inset >= 0.0))
     if not len(rows):
         return None
@@ -66,7 +66,7 @@ def _around_seen(section: Section, chart: Map, least: float) -> Window | None:
 
 
 def _clipped(section: Section, low: Array, high: Array) -> Window:
-    """Bounds (2,) within the plane's."""
+    """Bounds (2,), cut to those of the plane."""
     first, second = (
         (max(float(a), low_), min(float(b), high_))
         for a, b, (low_, high_) in zip(low, high, window_of(section), strict=True)
@@ -80,7 +80,7 @@ def _area(window: Window) -> float:
 
 
 def _climbed(index: Index, section: Section, names: tuple[str, ...], chart: Map) -> Array | None:
-    """(2,) the best point that climbing from the best nodes inside the region finds; None where none has a value."""
+    """(2,) the best point that climbs from the best nodes in the region find; None if none has a value."""
     good = np.where(np.isfinite(chart.values) & (chart.inset >= 0.0), chart.values, -np.inf)
     best = np.argsort(-good, axis=None, kind="stable")[:_CLIMBS]
     best = best[np.isfinite(good.ravel()[best])]
@@ -98,7 +98,7 @@ def _climbed(index: Index, section: Section, names: tuple[str, ...], chart: Map)
 
 
 def _good(index: Index, section: Section, names: tuple[str, ...], points: Array) -> Array:
-    """(..., 2) -> (...,) the index, larger is better, the worst behind each point; -inf beyond a curved boundary."""
+    """(..., 2) -> (...,) the worst goodness of each point's poses; larger is better; -inf outside a curved boundary."""
     flat = points.reshape(-1, 2)
     good, _ = worst_behind(index, section, names, flat)
     return np.where(section.inset(flat) >= 0.0, good, -np.inf).reshape(points.shape[:-1])

@@ -1,4 +1,4 @@
-"""Regions of the pose space: boxes, cylinders, and what every region can do."""
+"""Regions of the pose space: boxes, cylinders, and their common base."""
 
 from design.regions.box import Box
 from design.regions.cylinder import Cylinder

@@ -13,10 +13,10 @@ from kinematics import LENGTHS, Array, is_length
 
 
 class Box(Region):
-    """An axis-aligned box: `Box(x=0.0, y=(-0.25, 0.25), ...)`; a number fixes a coordinate.
+    """An axis-aligned box, such as `Box(x=0.0, y=(-0.25, 0.25), ...)`; a single number fixes a coordinate.
 
     Raises:
-        InvalidRegion: bounds that are not finite or not in rising order.
+        InvalidRegion: bounds are not finite, or the lower one is not first.
     """
 
     def __init__(self, **coordinates: Interval) -> None:
@@ -32,11 +32,11 @@ class Box(Region):
 
     @property
     def dimension(self) -> int:
-        """Coordinates that are not fixed."""
+        """Number of coordinates that are not fixed."""
         return sum(low < high for low, high in self._intervals.values())
 
     def from_unit(self, unit: Array, names: Sequence[str]) -> Array:
-        """Affine, in the order of `names`; fixed coordinates take no column of `unit`."""
+        """An affine map, in the order of `names`. Fixed coordinates have no column in `unit`."""
         pose = np.empty((*unit.shape[:-1], len(names)))
         column = 0
         for i, name in enumerate(names):
@@ -49,33 +49,33 @@ class Box(Region):
         return pose
 
     def room(self, poses: Array, names: Sequence[str]) -> Array:
-        """To the nearest bound of a coordinate."""
+        """Distance to the nearest bound of a coordinate."""
         low, high = np.array([self._intervals[name] for name in names]).T
         result: Array = np.minimum(poses - low, high - poses).min(axis=-1)
         return result
 
     def grown(self, share: float) -> Box:
-        """By the largest of its own lengths."""
+        """The box with its bounds further out; lengths grow by `share` of the box's own `size`."""
         return self.grown_by(share, self.size)
 
     def grown_by(self, share: float, size: float) -> Box:
-        """With the size of the region that this is a part of [m]."""
+        """As `grown`, with the `size` of a region that this box is a part of [m]."""
         by = {name: share * (size if is_length(name) else 1.0) for name in self._intervals}
         return Box(**{name: (low - by[name], high + by[name]) for name, (low, high) in self._intervals.items()})
 
     def contains(self, poses: Array, names: Sequence[str], slack: float = ROUNDING) -> Array:
-        """Between all bounds."""
+        """Whether poses are between all bounds."""
         low, high = np.array([self._intervals[name] for name in names]).reshape(-1, 2).T
         beyond = slack * np.maximum(np.abs(low), np.abs(high))
         result: Array = ((poses >= low - beyond) & (poses <= high + beyond)).all(axis=-1)
         return result
 
     def narrowed(self, given: Mapping[str, Array]) -> dict[str, tuple[Array | float, Array | float]]:
-        """The others' own bounds."""
+        """The bounds of the other coordinates, which do not depend on those given."""
         return {name: interval for name, interval in self._intervals.items() if name not in given}
 
     def inset(self, given: Mapping[str, Array]) -> Array:
-        """No boundary is curved."""
+        """Infinity, as no boundary is curved."""
         return np.full(np.broadcast_shapes(*(np.shape(v) for v in given.values())), np.inf)
 
     def outline(self) -> list[Array]:

@@ -16,19 +16,19 @@ from kinematics import Array
 
 
 class Cylinder(Region):
-    """x and y inside a circle about the z axis, the other coordinates in intervals.
+    """Poses with x and y inside a circle about the z axis, and the other coordinates in intervals.
 
     Raises:
-        InvalidRegion: a radius that is not positive, or bounds not in rising order.
+        InvalidRegion: the radius is not positive, or of two bounds the lower one is not first.
     """
 
     def __init__(self, radius: float, **coordinates: Interval) -> None:
         self.radius = number(radius)
         if not self.radius >= 1.0 / LARGEST:
-            raise InvalidRegion("radius", radius, "a length > 0 m whose square is a number")
+            raise InvalidRegion("radius", radius, "a length > 0 m, not above 1e100")
         for name in ("x", "y"):
             if name in coordinates:
-                raise InvalidRegion(name, coordinates[name], "only the radius for x and y")
+                raise InvalidRegion(name, coordinates[name], "no bounds, as the radius bounds x and y")
         self._rest = Box(**coordinates)
 
     def __repr__(self) -> str:
@@ -36,17 +36,17 @@ class Cylinder(Region):
 
     @property
     def intervals(self) -> dict[str, tuple[float, float]]:
-        """Bounds by name; x and y those of the circle's square."""
+        """Bounds by name; those of x and y are plus and minus the radius."""
         side = (-self.radius, self.radius)
         return {"x": side, "y": side} | self._rest.intervals
 
     @property
     def dimension(self) -> int:
-        """The disc's two, and the rest."""
+        """Two for the disc, and the number of other coordinates that are not fixed."""
         return 2 + self._rest.dimension
 
     def from_unit(self, unit: Array, names: Sequence[str]) -> Array:
-        """Area-true polar coordinates in the first two columns, affine in the rest."""
+        """The first two columns are polar coordinates that keep ratios of areas. The others are mapped affinely."""
         radius, azimuth = self.radius * np.sqrt(unit[..., 0]), 2.0 * math.pi * unit[..., 1]
         others = [name for name in names if name not in ("x", "y")]
         pose = np.empty((*unit.shape[:-1], len(names)))
@@ -62,7 +62,7 @@ class Cylinder(Region):
         return self.from_unit(np.array([(*d, *r) for r in rest for d in disc]), names)
 
     def room(self, poses: Array, names: Sequence[str]) -> Array:
-        """To the circle, or to the nearest bound of another coordinate."""
+        """Distance to the circle, or to the nearest bound of another coordinate."""
         x, y = poses[..., names.index("x")], poses[..., names.index("y")]
         others = [name for name in names if name not in ("x", "y")]
         rest = self._rest.room(poses[..., [names.index(name) for name in others]], others)
@@ -70,12 +70,12 @@ class Cylinder(Region):
         return result
 
     def grown(self, share: float) -> Cylinder:
-        """By the largest of the radius and the heights."""
+        """The cylinder with its bounds further out; lengths grow by `share` of the largest of radius and heights."""
         by = share * self.size
         return Cylinder(self.radius + by, **self._rest.grown_by(share, self.size).intervals)
 
     def contains(self, poses: Array, names: Sequence[str], slack: float = ROUNDING) -> Array:
-        """Within the circle and between the other bounds."""
+        """Whether poses are inside the circle and between the other bounds."""
         x, y = poses[..., names.index("x")], poses[..., names.index("y")]
         others = [name for name in names if name not in ("x", "y")]
         rest = self._rest.contains(poses[..., [names.index(name) for name in others]], others, slack)
@@ -83,7 +83,7 @@ class Cylinder(Region):
         return result
 
     def complete(self, given: Mapping[str, Array], unit: Array, names: Sequence[str]) -> Array:
-        """Where neither x nor y is given, the first two columns are polar coordinates in the disc."""
+        """As in the base. If neither x nor y is given, the first two columns are polar coordinates in the disc."""
         if "x" not in given and "y" not in given:
             radius, azimuth = self.radius * np.sqrt(unit[..., 0]), 2.0 * math.pi * unit[..., 1]
             given = {**given, "x": radius * np.cos(azimuth), "y": radius * np.sin(azimuth)}
@@ -91,7 +91,7 @@ class Cylinder(Region):
         return super().complete(given, unit, names)
 
     def narrowed(self, given: Mapping[str, Array]) -> dict[str, tuple[Array | float, Array | float]]:
-        """x or y in the chord that the other leaves; one of them has to be given."""
+        """Bounds of x or y on the chord at the other one's value; one of them must be given."""
         bounds = self._rest.narrowed(given)
         for name, other in (("x", "y"), ("y", "x")):
             if name not in given:
@@ -100,7 +100,7 @@ class Cylinder(Region):
         return bounds
 
     def inset(self, given: Mapping[str, Array]) -> Array:
-        """From the circle, where x and y are given or one of them is."""
+        """Distance inside the circle, if x or y or both are given."""
         return self.radius - np.hypot(given.get("x", 0.0), given.get("y", 0.0))
 
     def outline(self) -> list[Array]:

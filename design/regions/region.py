@@ -1,7 +1,7 @@
-"""Regions of the pose space, all coordinates continuous.
+"""Regions of the pose space.
 
-A region is a map from the unit cube: one parametrisation serves grids, random samples and local searches, and its
-faces are the region's boundary.
+A region is a map from the unit cube to poses. The faces of the cube are the region's boundary. Grids, random samples
+and local searches all use this map.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from design.errors import InvalidRegion
 from kinematics import Array, is_length
 
 ROUNDING = 1e-12  # relative to the largest number between the bounds
-_FEW = 4  # coordinates up to which three values of each are few poses
-CHUNK = 1 << 15  # poses: enough for all threads, and a chunk stays in the second cache
+_FEW = 4  # up to so many coordinates, three values of each make few poses
+CHUNK = 1 << 15  # poses: enough work for all threads, and the chunk stays in the second-level cache
 
 
 def unit_grid(counts: Sequence[int], chunk: int = CHUNK) -> Iterator[Array]:
-    """(k, d) points of a regular grid of the unit cube, k <= chunk at a time; the last coordinate runs fastest."""
+    """(k, d) points of a regular grid of the unit cube, k <= chunk at a time; the last coordinate changes fastest."""
     axes = [np.linspace(0.0, 1.0, c) if c > 1 else np.array([0.5]) for c in counts]
     total = math.prod(counts)
     for first in range(0, total, chunk):
@@ -54,25 +54,25 @@ class Region(ABC):
 
     @abstractmethod
     def room(self, poses: Array, names: Sequence[str]) -> Array:
-        """(..., n) -> (...,) how far each pose is inside the nearest boundary, negative beyond it [m or rad]."""
+        """(..., n) -> (...,) distance of each pose inside the nearest boundary, negative outside [m or rad]."""
 
     @abstractmethod
     def grown(self, share: float) -> Region:
-        """With each bound further out, of an angle by `share` radians, of a length by that share of `size`."""
+        """The region with each bound further out: an angle by `share` radians, a length by `share` times `size`."""
 
     @property
     def size(self) -> float:
-        """The largest distance of a bound of x, y or z from 0 [m]: what makes a distance large or small here."""
+        """The largest distance of a bound of x, y or z from 0 [m]. Tolerances scale with it."""
         bounds = [bound for name, pair in self.intervals.items() if is_length(name) for bound in pair]
         return float(np.abs(bounds).max(initial=0.0))
 
     @abstractmethod
     def narrowed(self, given: Mapping[str, Array]) -> dict[str, tuple[Array | float, Array | float]]:
-        """Bounds of each coordinate that is not given, where those that are have these values (...,)."""
+        """Bounds of each coordinate that is not given, at these values (...,) of the given ones."""
 
     @abstractmethod
     def inset(self, given: Mapping[str, Array]) -> Array:
-        """(...,) how far the given coordinates (...,) are inside a curved boundary [m]; infinity without one."""
+        """(...,) distance of the given coordinates (...,) inside a curved boundary [m]; infinity without one."""
 
     @abstractmethod
     def outline(self) -> list[Array]:
@@ -83,21 +83,21 @@ class Region(ABC):
         """(..., n) -> (...,) whether each pose is inside.
 
         Args:
-            slack: a coordinate may be beyond a bound by this part of the larger of both bounds, without their signs.
+            slack: a coordinate may be outside a bound by this share of the larger size of its two bounds.
         """
 
     def check(self, names: Sequence[str]) -> None:
-        """Check that the region speaks of exactly these coordinates.
+        """Check that the region has exactly these coordinates.
 
         Raises:
-            InvalidRegion: one is missing or unknown.
+            InvalidRegion: a coordinate is missing or unknown.
         """
         for name in names:
             if name not in self.intervals:
-                raise InvalidRegion(name, "nothing", f"bounds for each of {', '.join(names)}")
+                raise InvalidRegion(name, "no bounds", f"bounds for each of {', '.join(names)}")
         for name in self.intervals:
             if name not in names:
-                raise InvalidRegion(name, "a coordinate", f"one of {', '.join(names)}")
+                raise InvalidRegion(name, "an unknown coordinate", f"one of {', '.join(names)}")
 
     def complete(self, given: Mapping[str, Array], unit: Array, names: Sequence[str]) -> Array:
         """Poses from some coordinates and a point of the unit cube for the others.
@@ -107,7 +107,7 @@ class Region(ABC):
             unit: (..., k) in [0, 1], one column for each other coordinate that is not fixed, in the order of `names`.
 
         Returns:
-            (..., n); affine in the others, so not uniform over their volume.
+            (..., n). The map of the others is affine, so a uniform `unit` does not give uniform volume.
         """
         pose = np.empty((*unit.shape[:-1], len(names)))
         bounds, column = self.narrowed(given), 0
@@ -128,18 +128,18 @@ class Region(ABC):
         return low < high
 
     def grid(self, names: Sequence[str], counts: Sequence[int]) -> Array:
-        """(prod counts, n) poses on a regular grid of the unit cube, its faces included."""
+        """(prod counts, n) poses on a regular grid of the unit cube, including its faces."""
         return np.concatenate(list(self.walk(names, counts)))
 
     def walk(self, names: Sequence[str], counts: Sequence[int], chunk: int = CHUNK) -> Iterator[Array]:
-        """The poses of `grid` in its order, (k, n) with k <= chunk at a time, so that no list of them is in memory."""
+        """The poses of `grid` in its order, (k, n) with k <= chunk at a time; memory never holds all of them."""
         return (self.from_unit(unit, names) for unit in unit_grid(counts, chunk))
 
     def spread(self, names: Sequence[str]) -> Array:
-        """(k, n) few distinct poses that reach every side of the region, corners and middle included."""
+        """(k, n) a few distinct poses on every side of the region, including its corners and its middle."""
         if self.dimension <= _FEW:
             return np.unique(self.grid(names, (3,) * self.dimension), axis=0)
-        k = self.dimension  # corners, and the middle of each side and of the whole
+        k = self.dimension  # corners, the middle of each side, and the middle of the whole
         sides = np.concatenate([np.full((1, k), 0.5), 0.5 + 0.5 * np.eye(k), 0.5 - 0.5 * np.eye(k)])
         unit = np.concatenate([np.array(list(product((0.0, 1.0), repeat=k))), sides])
         return np.unique(self.from_unit(unit, names), axis=0)

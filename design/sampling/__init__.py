@@ -1,4 +1,4 @@
-"""Where a margin is worst, found by dense samples."""
+"""Dense samples that find where a margin is worst."""
 
 from design.sampling.sweep import Sweep, sweep
 from design.sampling.worst_pose import DENSE, WorstPoses, descend, worst_poses

@@ -1,4 +1,4 @@
-"""Reduces a value over more poses than memory holds: the poses pass by in chunks, and only what was asked is kept."""
+"""Lowest values, mean and counts of a value over more poses than memory can hold: the poses come in chunks."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from kinematics import Array, Value
 
 @dataclass(frozen=True, eq=False)
 class Sweep(Value):
-    """What is left of a value over all poses; a pose whose value is NaN counts as lost and enters nothing else.
+    """Figures of a value over all poses. A pose whose value is NaN counts only as lost.
 
     Attributes:
-        poses: how many went by.
-        lost: how many of them had no value.
-        values: (k,) the lowest values, rising; of equal ones the first that went by.
+        poses: the number of poses.
+        lost: the number of poses without a value.
+        values: (k,) the lowest values, in rising order; of equal values the first ones.
         at: (k, n) their poses.
-        mean, deviation: arithmetic mean and standard deviation (divided by all, not all less one); NaN where none had
-            a value.
-        below: (b,) how many values lie below each level.
+        mean, deviation: arithmetic mean and standard deviation (divided by the number k of values, not k - 1); NaN if
+            no pose has a value.
+        below: (b,) the number of values below each level.
     """
 
     poses: int
@@ -41,7 +41,7 @@ def sweep(
     Args:
         value: (k, n) poses -> (k,) values, such as `robot.fvi`.
         chunks: arrays (k, n), such as `region.walk(names, counts)` yields.
-        keep: how many of the lowest values are kept.
+        keep: the number of lowest values that are kept.
         levels: bounds below which values are counted.
     """
     poses = used = 0
@@ -69,9 +69,9 @@ def sweep(
 
 
 def _joined(before: tuple[int, float, float], values: Array) -> tuple[int, float, float]:
-    """Count, mean and sum of squared deviations with more values: the pairwise update of Chan, Golub and LeVeque."""
+    """Count, mean and sum of squared deviations after more values, by the update of Chan, Golub and LeVeque."""
     count, mean, spread = before
-    with np.errstate(invalid="ignore"):  # an infinite value makes the deviation NaN, as it is
+    with np.errstate(invalid="ignore"):  # an infinite value makes the deviation NaN, which is right
         more = float(values.mean())
         step, total = more - mean, count + len(values)
         spread += float(((values - more) ** 2).sum()) + step**2 * (count * len(values) / total)

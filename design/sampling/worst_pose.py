@@ -1,7 +1,7 @@
-"""Where a margin is worst: a dense grid, then a descent between its points.
+"""Where a margin is worst: a dense grid, then descents between its points.
 
-A grid alone overstates the worst case, so the lowest grid poses are followed downhill until the step is far below the
-grid's. The answer is still a sample's, an upper bound of the true worst, and it is named so.
+A grid alone gives too good a worst value, so descents start at its lowest poses and end with a step far below that of
+the grid. The answer is still that of a sample: an upper bound of the true worst value.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from design.regions import Region, unit_grid
 from design.sampling.sweep import sweep
 from kinematics import Array, FviBounds, Mechanism, Value, whole
 
-DENSE = 1_000_000  # poses of a grid that is far denser than any that is solved on
+DENSE = 1_000_000  # poses of a dense grid; the optimisation uses far fewer poses
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,9 +26,9 @@ class WorstPoses(Value):
     Attributes:
         values: (k,) the margin; -inf where a limb cannot reach and the margin has no value.
         poses: (k, n).
-        sampled: how many poses of the grid were looked at.
-        complete: whether that was all of them; not where the time ran out.
-        typical: mean modulus of the margin over a few poses of the region, for its scale; NaN where it has none.
+        sampled: the number of grid poses that were evaluated.
+        complete: whether these were all poses of the grid; false if the time ended before.
+        typical: mean modulus of the margin over a few poses of the region, for its scale; NaN if it has no value there.
     """
 
     values: Array
@@ -39,18 +39,18 @@ class WorstPoses(Value):
 
     @property
     def value(self) -> float:
-        """The worst of all."""
+        """The worst value of all."""
         return float(self.values[0])
 
     @property
     def pose(self) -> Array:
-        """(n,) where it is."""
+        """(n,) the pose with the worst value."""
         result: Array = self.poses[0]
         return result
 
 
 def dense_counts(dimension: int, about: int) -> tuple[int, ...]:
-    """Equal counts for a grid of roughly `about` poses, odd so that the middle is on it."""
+    """Equal counts for a grid of roughly `about` poses. They are odd, so that the middle is on the grid."""
     each = max(3, round(about ** (1.0 / max(1, dimension))))
     return (each + 1 - each % 2,) * dimension
 
@@ -70,15 +70,15 @@ def worst_poses(
 
     Args:
         robot: the mechanism with its geometry.
-        region: where to look.
+        region: the poses to search.
         margin: one of `robot.margins`.
         bounds, characteristic_length: as in `Mechanism.margin`.
-        about: size of the grid.
-        descents: how many of the lowest grid poses are followed downhill.
-        seconds: the grid is left where it is after so many; see `WorstPoses.complete`.
+        about: approximate number of grid poses.
+        descents: the number of lowest grid poses that a descent starts from.
+        seconds: after so much time no more grid poses are evaluated; see `WorstPoses.complete`.
 
     Raises:
-        InvalidRegion, InvalidValue: the region or the margin is not the robot's, or a number means nothing.
+        InvalidRegion, InvalidValue: the region or the margin does not fit the robot, or a number is impossible.
     """
     names, budget = robot.pose_names, Budget(seconds)
     region.check(names)
@@ -111,7 +111,10 @@ def _typical(values: Array) -> float:
 
 
 def descend(value, unit: Array, step: Array, rounds: int = 40) -> tuple[Array, Array]:  # type: ignore[no-untyped-def]
-    """Compass search of all points at once inside the unit cube; a point without a better neighbour halves its step."""
+    """Compass search from all points at once inside the unit cube.
+
+    A point without a better neighbour halves its step.
+    """
     k = unit.shape[1]
     moves = np.concatenate([np.eye(k), -np.eye(k)])
     scale = np.ones(len(unit))
@@ -129,7 +132,7 @@ def descend(value, unit: Array, step: Array, rounds: int = 40) -> tuple[Array, A
 
 
 def _distinct(poses: Array, extent: Array) -> list[int]:
-    """Indices of poses that are not within a hundredth of the region of an earlier one."""
+    """Indices of poses that are further than a hundredth of the region from every earlier one."""
     kept: list[int] = []
     for i, pose in enumerate(poses):
         if all(np.abs((pose - poses[j]) / extent).max() > 0.01 for j in kept):

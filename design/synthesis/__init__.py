@@ -1,4 +1,4 @@
-"""Optimal geometry: nonlinear programs over few poses, and the exchange of poses that makes them hold everywhere."""
+"""Optimal geometry: nonlinear programs over few poses; worse poses are added until the answer holds everywhere."""
 
 from design.synthesis.errors import SynthesisFailed
 from design.synthesis.exchange import worst_of

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class SynthesisFailed(LinkwrightError):
-    """The optimisation has no answer to stand by; `best` is the best geometry that was seen all the same, or None."""
+    """The optimisation has no answer. `best` is the best geometry that was seen, which is not an optimum, or None."""
 
     exit_status = 1
 

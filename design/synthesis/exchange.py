@@ -1,4 +1,6 @@
-"""The rounds of a synthesis: an NLP over few poses, a dense search for worse ones, and the best geometry seen."""
+"""The rounds of a synthesis: a nonlinear program (NLP) over few poses, a dense search for worse poses, and the best
+geometry seen.
+"""
 
 from __future__ import annotations
 
@@ -16,18 +18,18 @@ from design.synthesis.nlp import NlpSolution, Problem, solve
 from kinematics import Array, InvalidGeometry, Mechanism
 
 Progress = Callable[[str], None]
-_OF_THE_WAY = 0.9  # to where a geometry that is drawn back should hold: the margins are no straight lines
-_DIGITS = 8  # of a variable, so that a file holds exactly what was checked
+_OF_THE_WAY = 0.9  # share of the linear estimate that is used, as the margins are not linear
+_DIGITS = 8  # digits of a variable, so that a file holds exactly the number that was checked
 
 
 @dataclass(frozen=True)
 class Round:
-    """One exchange: what the NLP promised on its poses and what the dense search found."""
+    """One round: the objective that the NLP promised on its poses, and the one that the dense search found."""
 
     poses: int
     promised: float
     found: float
-    shortfall: float  # how far the worst requirement is below its bound; <= 0 when all hold
+    shortfall: float  # distance of the worst requirement below its bound; <= 0 if all hold
     iterations: int
     seconds: float
 
@@ -40,13 +42,13 @@ class Round:
 
 @dataclass(frozen=True)
 class Candidate:
-    """A geometry that was looked at densely, and that nothing says to be the best.
+    """A geometry with a dense search. It is not known to be the best.
 
     Attributes:
         robot: the mechanism with this geometry.
-        worst: worst poses by margin, as far as a dense search looked.
+        worst: worst poses by margin, as far as the dense search went.
         objective: the worst value of the objective.
-        shortfall: how far the worst requirement is below its bound; <= 0 when all hold.
+        shortfall: distance of the worst requirement below its bound; <= 0 if all hold.
     """
 
     robot: Mechanism
@@ -56,7 +58,7 @@ class Candidate:
 
     @property
     def rank(self) -> tuple[float, float]:
-        """The larger the better: whether requirements hold, then the objective."""
+        """A larger rank is better: first whether requirements hold, then the objective."""
         return -max(self.shortfall, 0.0), self.objective
 
     def __str__(self) -> str:
@@ -66,13 +68,13 @@ class Candidate:
 
 @dataclass
 class Exchange:
-    """What all rounds share, and the best geometry seen.
+    """The data that all rounds share, and the best geometry seen.
 
     Attributes:
-        seen: the best geometry that was looked at densely; the prototype where its bounds and sums allow that.
-        last: the latest one that broke a requirement.
-        looked: the longest dense search [s]. The solver leaves time for two, so that where it is stopped there is still
-            something to say.
+        seen: the best geometry with a dense search; at first the prototype, if the bounds and sums allow it.
+        last: the latest geometry that broke a requirement.
+        looked: the longest dense search [s]. The solver leaves time for two of them, so that there is a best geometry
+            to report if it is stopped.
     """
 
     problem: Problem
@@ -85,14 +87,14 @@ class Exchange:
     looked: float = field(default=0.0, init=False)
 
     def look(self, robot: Mechanism) -> dict[str, WorstPoses]:
-        """Its worst poses by margin, as far as the time allows."""
+        """The robot's worst poses by margin, as far as the time allows."""
         started = time.perf_counter()
         worst = worst_of(self.problem, robot, self.region, self.about, self.budget.left)
         self.looked = max(self.looked, time.perf_counter() - started)
         return worst
 
     def note(self, robot: Mechanism, worst: dict[str, WorstPoses]) -> Candidate:
-        """A geometry that was looked at densely; the best one is kept."""
+        """The candidate of a geometry with a dense search. The best one is kept."""
         short = max((r.at_least - worst[r.margin].value for r in self.problem.requirements), default=-np.inf)
         found = Candidate(robot, worst, worst[self.problem.objective].value, short)
         if np.isfinite(found.objective) and (self.seen is None or found.rank > self.seen.rank):
@@ -101,7 +103,7 @@ class Exchange:
         return found
 
     def better_than(self, found: Candidate, slack: float) -> Candidate | None:
-        """The best geometry seen, where it beats the one that was found: the NLP is to be solved from there, too."""
+        """The best geometry seen, if it is better than `found`; the NLP should also start from there. Else None."""
         best = self.seen
         beats = best is not None and best.shortfall <= 0.0 and best.objective > found.objective + slack
         return best if beats else None
@@ -115,13 +117,13 @@ class Exchange:
         try:
             return self.problem.robot_with(rounded(self.problem, solution.values))
         except InvalidGeometry as error:
-            what = f"the NLP came to what is no geometry within the variables' bounds: {error}"
+            what = f"the NLP returned an impossible geometry within the variables' bounds: {error}"
             raise SynthesisFailed(what, solution.status, self.seen) from error
 
     def best_of(self, poses: Array, firsts: list[Array], sizes: Mapping[str, float]) -> NlpSolution:
-        """The best converged solution of all starts; each may take half of the time that is left.
+        """The best converged solution of all starts. Each start may take half of the time that is left.
 
-        Once one converged, the starts together leave half of all the time to the rounds that follow.
+        After one start has converged, the starts together leave half of all the time for the later rounds.
         """
         best: NlpSolution | None = None
         half, tried = self.budget.share(2), []
@@ -137,7 +139,10 @@ class Exchange:
         return best if best is not None else self._fail(poses, tried)
 
     def first_of(self, poses: Array, firsts: list[Array], sizes: Mapping[str, float]) -> NlpSolution:
-        """The first converged solution; the last optimum may not reach poses that were added, then the others start."""
+        """The first converged solution.
+
+        If the last optimum cannot reach the added poses, the other starts are tried.
+        """
         tried = []
         for k, first in enumerate(firsts):
             seconds = max(self.budget.left - 2 * self.looked, 0.0) / (len(firsts) - k)
@@ -151,22 +156,22 @@ class Exchange:
         """Check the budget.
 
         Raises:
-            SynthesisFailed: it is used up.
+            SynthesisFailed: the time is used up.
         """
         if self.budget.left <= 2 * self.looked:
-            raise self.failed(f"the budget of {self.budget} was used up {done}", solution)
+            raise self.failed(f"the time of {self.budget} ended {done}", solution)
 
     def failed(self, reason: str, solution: NlpSolution) -> SynthesisFailed:
-        """What to raise, with the best geometry seen; the last one is drawn back to it until its requirements hold."""
+        """The error to raise, with the best geometry seen. One between it and the last geometry is tried, too."""
         drawn = self._drawn_back()
         if drawn is not None:
             self.note(drawn, self.look(drawn))
         return SynthesisFailed(reason, solution.status, self.seen)
 
     def _drawn_back(self) -> Mechanism | None:
-        """Between the best geometry seen, where that holds, and a better one that does not: where all should hold.
+        """A geometry between the best one seen, which holds, and a better one that does not, where all should hold.
 
-        The margins' worst values are taken to be straight lines between the two.
+        The worst values of the margins are assumed to change linearly between the two.
         """
         best, beyond = self.seen, self.last
         if best is None or beyond is None or best.shortfall > 0.0 or beyond.objective <= best.objective:
@@ -185,7 +190,7 @@ class Exchange:
         return robot if self.problem.allows(robot) else None
 
     def _fail(self, poses: Array, tried: list[NlpSolution]) -> NlpSolution:
-        """Raise what solutions that did not converge come to; the one that breaks the least is looked at densely."""
+        """Raise the error of solutions that did not converge, after a dense search of the one that breaks the least."""
         nearest = max(tried, key=lambda one: (-sum(one.violations.values()), one.objective))
         robot = self.robot_of(nearest)
         if not self.budget.spent:
@@ -197,7 +202,7 @@ class Exchange:
 
 
 def rounded(problem: Problem, values: Array) -> Array:
-    """(k,) the variables with so many digits, inside their bounds."""
+    """(k,) the variables with `_DIGITS` digits, inside their bounds."""
     low, high = problem.bounds()
     return np.clip([float(f"{value:.{_DIGITS}g}") for value in values], low, high)
 
@@ -208,7 +213,7 @@ def worst_of(
     """Worst poses of the objective and of each requirement, by margin, from a grid of about that many poses.
 
     Args:
-        seconds: for all of them; see `WorstPoses.complete`.
+        seconds: time for all of them [s]; see `WorstPoses.complete`.
     """
     budget, found = Budget(max(seconds, 1e-9)), {}
     for k, margin in enumerate(problem.margins):

@@ -1,10 +1,10 @@
-"""One max-min NLP over a fixed set of poses, in epigraph form, solved by IPOPT.
+"""A nonlinear program (NLP) that maximises the worst value over a fixed set of poses, solved by IPOPT.
 
-Maximise t subject to: every component of the objective margin is at least t at every pose; every requirement holds at
-every pose with a little to spare, and every limb reaches; the geometry stays within its bounds and sums. Gradients and
-Hessians come from the mechanism's own expressions by automatic differentiation.
+It maximises t under these constraints. Every component of the objective margin is at least t at every pose. Every
+requirement holds at every pose with a small reserve. Every limb can reach. The geometry stays within its bounds and
+sums. Gradients and Hessians come from the mechanism's own expressions by automatic differentiation.
 
-Margins are measured by their own size, and variables by their bounds: the same problem in another size is the same.
+Margins are divided by their size and variables by their range, so that a larger robot gives the same problem.
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ from design.requirement import Bounds, Requirement, SumLimit
 from design.sampling import WorstPoses
 from kinematics import Array, FviBounds, Mechanism, Value
 
-_DECADES = 10.0  # a variable whose bounds are that far apart is counted in powers
-_TIE = 1e-7  # of the objective's size: of equal optima the one near the start, so that an exchange does not wander
-_SUM_SPARE = 1e-7  # by which a sum stays below its limit, relative to it: what rounding a result may take
+_DECADES = 10.0  # if a variable's bounds differ by this factor, a logarithmic scale is used
+_TIE = 1e-7  # times the objective's size: chooses, of equal optima, the one nearest to the start
+_SUM_SPARE = 1e-7  # relative reserve of a sum below its limit, for the rounding of the result
 _REACH = "every limb reaches"
 
 
 @dataclass(frozen=True)
 class Problem:
-    """What is to be optimised, whatever the poses.
+    """The optimisation problem, for any set of poses.
 
     Attributes:
-        robot: the prototype; fields that are no variables keep its values.
+        robot: the prototype. Fields that are no variables keep its values.
         objective: the margin whose worst value is maximised.
-        variables, requirements, sums: as named.
-        fvi_bounds, characteristic_length: what the FVI is measured with; the length stays while the geometry varies.
-        spare: how much more than its bound each requirement gets in the NLP, so that it holds between the poses too;
-            relative to the margin's own size, see `sizes`.
+        variables, requirements, sums: the variables with their bounds, the requirements, and the limits of sums.
+        fvi_bounds, characteristic_length: what the FVI is measured with; the length is the same for every geometry.
+        spare: reserve of each requirement above its bound in the NLP, so that it also holds between the poses; relative
+            to the margin's own size, see `sizes`.
     """
 
     robot: Mechanism
@@ -56,12 +56,12 @@ class Problem:
         return np.array([v.low for v in self.variables]), np.array([v.high for v in self.variables])
 
     def moving(self) -> Array:
-        """(k,) whether each variable has a range to move in, 1 or 0."""
+        """(k,) 1 for each variable that can change, 0 for one that its bounds fix."""
         low, high = self.bounds()
         return np.asarray(high > low, dtype=float)
 
     def from_unit(self, unit: Any) -> list[Any]:
-        """k variables from numbers or symbols (k,) in [0, 1]: powers between bounds that are decades apart."""
+        """k variables from numbers or symbols (k,) in [0, 1]; on a logarithmic scale if bounds are far apart."""
         pairs = zip(*self.bounds(), strict=True)
         return [
             low * (high / low) ** u if _in_powers(low, high) else low + (high - low) * u
@@ -69,7 +69,7 @@ class Problem:
         ]
 
     def to_unit(self, values: Array) -> Array:
-        """(k,) the inverse of `from_unit`, held in [0, 1]; 0 for what is fixed."""
+        """(k,) the inverse of `from_unit`, limited to [0, 1]; 0 for a fixed variable."""
         pairs = zip(*self.bounds(), strict=True)
         found = [
             math.log(max(v, low) / low) / math.log(high / low)
@@ -81,11 +81,11 @@ class Problem:
 
     @property
     def margins(self) -> tuple[str, ...]:
-        """The objective and what is required, each once."""
+        """The margins of the objective and the requirements, each once."""
         return tuple(dict.fromkeys([self.objective, *(r.margin for r in self.requirements)]))
 
     def sizes(self, robot: Mechanism, poses: Array) -> dict[str, float]:
-        """By margin, the largest finite modulus that a robot has at the poses (p, n); 1 where it has none but 0."""
+        """By margin, its largest finite modulus at the poses (p, n) of a robot; 1 if there is none above 0."""
         found = {}
         for margin in self.margins:
             values = np.abs(robot.margin(margin, poses, self.fvi_bounds, self.characteristic_length))
@@ -93,18 +93,18 @@ class Problem:
         return found
 
     def starts(self) -> dict[str, int]:
-        """Where each field's first number stands in the geometry's vector."""
+        """The place of each field's first number in the geometry's vector."""
         sizes = self.robot.geometry.sizes()
         firsts = np.cumsum([0, *sizes.values()])[:-1]
         return {name: int(first) for name, first in zip(sizes, firsts, strict=True)}
 
     def places(self) -> list[int]:
-        """Where each variable stands in the geometry's vector."""
+        """The place of each variable in the geometry's vector."""
         starts = self.starts()
         return [starts[v.field] + v.item for v in self.variables]
 
     def summed(self, limit: SumLimit) -> list[list[int]]:
-        """Places whose sum is limited, one list for each entry of the fields; a plain number counts in every one."""
+        """Places whose sum is limited, one list for each entry of the fields. A plain number is in every list."""
         starts, sizes = self.starts(), self.robot.geometry.sizes()
         entries = range(max(sizes[f] for f in limit.fields))
         return [[starts[f] + (k if sizes[f] > 1 else 0) for f in limit.fields] for k in entries]
@@ -126,16 +126,16 @@ class Problem:
 
 @dataclass(frozen=True, eq=False)
 class NlpSolution(Value):
-    """What IPOPT returned for one set of poses.
+    """The answer of IPOPT for one set of poses.
 
     Attributes:
         values: (k,) the variables.
         objective: t, the worst objective over the poses.
-        status: IPOPT's own words; `converged` only where they mean an optimum.
-        violations: by how much each requirement or sum falls short at the returned point, the largest first; empty when
-            all hold.
-        iterations: of the interior-point method.
-        seconds: wall-clock time of the solve.
+        status: IPOPT's own status; `converged` is true only if it means an optimum.
+        violations: the shortfall of each requirement or sum at the returned point, the largest first; empty if all
+            hold.
+        iterations: the number of iterations of the interior-point method.
+        seconds: wall-clock time of the solver.
     """
 
     values: Array
@@ -153,8 +153,8 @@ def solve(
     """Solve over the poses (p, n) from a start (k,).
 
     Args:
-        sizes: of the margins, see `Problem.sizes`; by default those of the start at the poses.
-        seconds: the solver stops after so many, without having converged.
+        sizes: the sizes of the margins, see `Problem.sizes`; by default those of the start at the poses.
+        seconds: the solver stops after so much time, even if it has not converged.
     """
     started = time.perf_counter()
     if sizes is None:
@@ -199,7 +199,7 @@ def _options(seconds: float) -> dict[str, Any]:
     return {
         "print_time": False,
         "error_on_fail": False,
-        "show_eval_warnings": False,  # the line search may try what cannot reach; IPOPT then shortens its step
+        "show_eval_warnings": False,  # if a trial geometry cannot reach, IPOPT shortens its step
         "ipopt": {
             "print_level": 0,
             "sb": "yes",
@@ -216,20 +216,20 @@ def _in_powers(low: float, high: float) -> bool:
 
 
 def _items(vector: Any) -> list[Any]:
-    """Its entries, of an array or of symbols."""
+    """The entries of an array or of a vector of symbols."""
     return ca.vertsplit(vector) if isinstance(vector, ca.MX) else list(vector)
 
 
 def _margin(
     problem: Problem, name: str, poses: Array, geometry: ca.MX, sizes: Mapping[str, float], bound: float = 0.0
 ) -> ca.MX:
-    """All components of a margin less a bound at all poses, over the margin's size."""
+    """All components of a margin minus a bound at all poses, over the margin's size."""
     components = problem.robot.margin_components(name, problem.fvi_bounds, problem.characteristic_length)
     return _mapped(problem, (components - bound) / sizes[name], poses, geometry)
 
 
 def _reach(problem: Problem, poses: Array, geometry: ca.MX) -> ca.MX:
-    """The reach of those limbs that no margin of the problem needs, over the sum of the geometry's numbers."""
+    """The reach of the limbs that no margin of the problem needs, over the sum of the geometry's numbers."""
     model, measured = problem.robot.model(), (problem.fvi_bounds, problem.characteristic_length)
     needed = ca.vertcat(*(problem.robot.margin_components(name, *measured) for name in problem.margins))
     rows = reach_rows(problem.robot, needed)
@@ -252,7 +252,7 @@ def _violations(rows: dict[str, ca.MX], values: Array) -> dict[str, float]:
 
 
 def _room_of_sum(problem: Problem, limit: SumLimit, geometry: ca.MX) -> ca.MX:
-    """Of each entry's sum, over the limit."""
+    """The distance of each entry's sum below the limit, over the limit."""
     size = abs(limit.at_most) or 1.0
     totals = [sum((geometry[p] for p in places), ca.MX(0)) for places in problem.summed(limit)]
     return ca.vertcat(*((limit.at_most - total) / size - _SUM_SPARE for total in totals))
@@ -261,11 +261,12 @@ def _room_of_sum(problem: Problem, limit: SumLimit, geometry: ca.MX) -> ca.MX:
 def active_sets(
     problem: Problem, robot: Mechanism, worst: Mapping[str, WorstPoses], closeness: float = 1e-3
 ) -> list[str]:
-    """Which bounds, sums and requirements hold the optimum back, in words.
+    """The bounds, sums and requirements that limit the optimum, in words.
 
     Args:
-        worst: of each requirement's margin.
-        closeness: relative, to the variable's range, to the sum's limit, or to the margin's size.
+        worst: the worst value of each requirement's margin.
+        closeness: how close counts as at the limit, relative to the variable's range, the sum's limit, or the margin's
+            size.
     """
     found = []
     vector = robot.geometry.vector()

@@ -1,4 +1,4 @@
-"""Where a synthesis starts: geometries within the bounds that reach the region."""
+"""The starts of a synthesis: geometries within the bounds that reach the region."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from design.synthesis.nlp import Problem
 from kinematics import Array, InvalidGeometry, Mechanism, UnreachablePose
 
 STARTS = 3  # by default: the prototype and two random geometries
-_ATTEMPTS = 200  # geometries drawn for each wanted start
+_ATTEMPTS = 200  # random geometries for each wanted start
 
 
 def require_possible_sums(problem: Problem) -> None:
     """Check that each sum can hold.
 
     Raises:
-        SynthesisFailed: its variables' lower bounds alone are too much.
+        SynthesisFailed: the sum of its variables' lower bounds is above the limit.
     """
     lowest = problem.robot.geometry.vector()
     lowest[problem.places()] = problem.bounds()[0]
@@ -24,15 +24,15 @@ def require_possible_sums(problem: Problem) -> None:
         least = max(float(lowest[places].sum()) for places in problem.summed(limit))
         if least > limit.at_most:
             raise SynthesisFailed(
-                f"{limit} cannot hold: with every variable at its lower bound it is {least:g}", "not started"
+                f"{limit} cannot hold: with every variable at its lower bound the sum is {least:g}", "not started"
             )
 
 
 def reaching_starts(problem: Problem, poses: Array, seed: int, count: int) -> list[Array]:
-    """Variables of geometries that reach every pose, the prototype's first; the others would start IPOPT on NaN.
+    """Variables of geometries that reach every pose, the prototype's first. From others IPOPT would start with NaN.
 
     Raises:
-        SynthesisFailed: none of many reaches them all; the one that comes nearest is described.
+        SynthesisFailed: none of many geometries reaches all poses; the message describes the nearest one.
     """
     low, high = problem.bounds()
     rng, tries = np.random.default_rng(seed), _ATTEMPTS * count
@@ -58,11 +58,12 @@ def reaching_starts(problem: Problem, poses: Array, seed: int, count: int) -> li
         return found
     if nearest is None:
         raise SynthesisFailed(
-            f"none of {tries} draws within the bounds is a geometry; the last: {refusal}", "not started"
+            f"none of {tries} random choices within the bounds is a possible geometry; the last: {refusal}",
+            "not started",
         )
     try:
         nearest.require_reachable(poses)
     except UnreachablePose as error:
         refusal = str(error)
     what = f"none of {tries} geometries within the bounds reaches the region"
-    raise SynthesisFailed(f"{what}; the nearest: {refusal or 'on the very edge of reach'}", "not started")
+    raise SynthesisFailed(f"{what}; the nearest: {refusal or 'exactly at the end of its reach'}", "not started")

@@ -1,7 +1,7 @@
-"""Optimal geometry by exchange: solve on few poses, look everywhere, add the worst poses found, solve again.
+"""Optimal geometry by exchange: solve on few poses, search everywhere, add the worst poses found, solve again.
 
-An optimum from a fixed coarse sample collapses between its poses; here the sample grows at the poses where the last
-answer was worst, until a dense search with descents agrees with the NLP. Only such an answer is returned.
+An optimum for a fixed coarse sample can be bad between its poses. So the poses where the last answer was worst are
+added, until a dense search with descents agrees with the nonlinear program (NLP). Only such an answer is returned.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ SECONDS = 600.0
 
 @dataclass(frozen=True)
 class Synthesis:
-    """An optimum that stood the dense search.
+    """An optimum that the dense search confirmed.
 
     Attributes:
         robot: the mechanism with the optimal geometry.
-        before, after: worst poses of the objective and of each requirement, by margin: prototype and optimum.
-        rounds: the exchanges.
-        status: the solver's last word.
-        sampled: poses of each dense grid.
+        before, after: worst poses of the objective and of each requirement, by margin, of prototype and optimum.
+        rounds: the rounds of the exchange.
+        status: the solver's last status.
+        sampled: number of poses of each dense grid.
     """
 
     robot: Mechanism
@@ -57,20 +57,21 @@ def synthesise(
     """Maximise the worst objective over the region.
 
     Args:
-        problem: variables, requirements and what the FVI is measured with.
+        problem: the variables, the requirements and what the FVI is measured with.
         region: the workspace.
-        seed, starts: the prototype and `starts - 1` random geometries start the first NLP; the best answer goes on.
-        about: size of the dense grids.
-        max_rounds: exchanges before giving up.
-        tolerance: difference between the NLP's promise and the dense search at which they agree, relative to the
-            objective's size.
-        seconds: wall-clock time before giving up.
-        progress: told a line of text at each step.
+        seed, starts: the first NLP starts from the prototype and from `starts - 1` random geometries; the best answer
+            is used.
+        about: approximate number of poses of the dense grids.
+        max_rounds: the most rounds.
+        tolerance: the NLP and the dense search agree if they differ by less than this, relative to the objective's
+            size.
+        seconds: the most wall-clock time [s].
+        progress: called with a line of text at each step.
 
     Raises:
-        SynthesisFailed: no start converged, the exchange did not settle, or the time was used up; with the best
-            geometry seen.
-        InvalidRegion, InvalidValue: the region is not the robot's, or a number means nothing.
+        SynthesisFailed: no start converged, the rounds did not settle, or the time ended; it holds the best geometry
+            seen.
+        InvalidRegion, InvalidValue: the region does not fit the robot, or a number is impossible.
     """
     tolerance, starts = positive("tolerance", tolerance), whole("starts", starts, 1)
     rounds = whole("max_rounds", max_rounds, 1)
@@ -93,7 +94,7 @@ def _exchanged(
     most_rounds: int,
     tolerance: float,
 ) -> Synthesis:
-    """All rounds, from the poses (p, n) of the first one."""
+    """All rounds; the first one uses the poses (p, n)."""
     problem = exchange.problem
     sizes = problem.sizes(problem.robot_with(firsts[0]), poses)
     solution = exchange.best_of(poses, firsts, sizes)
@@ -130,10 +131,10 @@ def _round(solution: NlpSolution, found: Candidate, poses: int) -> Round:
 def _offenders(
     problem: Problem, solution: NlpSolution, sizes: Mapping[str, float], slack: float, margin: str, worst: WorstPoses
 ) -> Array:
-    """(k, n) poses at which the last answer does worse than it promised, of the objective by more than `slack`.
+    """(k, n) poses where the last answer is worse than promised; for the objective by more than `slack`.
 
-    Where the objective is as good as promised hundreds of its lowest poses lie within the slack, and would only make
-    the next NLP slow.
+    If the objective is as good as promised, hundreds of its lowest poses are within the slack. They would only make the
+    next NLP slow.
     """
     spare = problem.spare * sizes[margin]
     floors = [r.at_least + spare for r in problem.requirements if r.margin == margin]

@@ -1,4 +1,4 @@
-"""From joints to the actuators that carry the limits, and back: a constant linear map of each mechanism."""
+"""From joints to actuators and back: a constant linear map of each mechanism. Limits are those of the actuators."""
 
 from __future__ import annotations
 

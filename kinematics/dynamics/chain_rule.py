@@ -22,7 +22,7 @@ class JointMotion(NamedTuple):
 
 
 def joint_motion(robot: Mechanism, pose: Array, first: Array, second: Array, third: Array) -> JointMotion:
-    """Derivatives of the joints by whatever parameter the pose's derivatives are by (time, arc length).
+    """Derivatives of the joints by the same parameter as the pose's derivatives (time or arc length).
 
     Args:
         pose, first, second, third: (..., n) the pose and its first three derivatives by that parameter.
@@ -34,7 +34,7 @@ def joint_motion(robot: Mechanism, pose: Array, first: Array, second: Array, thi
 
 
 def actuator_motion(robot: Mechanism, pose: Array, first: Array, second: Array, third: Array) -> JointMotion:
-    """As `joint_motion`, of the actuators: what their limits bound. The same unless the drives couple joints."""
+    """As `joint_motion`, for the actuators, which have the limits. It is the same unless drives couple joints."""
     return _motion(robot, _of_actuators, (pose, first, second, third))
 
 

@@ -4,8 +4,8 @@ The rigid-body model of a mechanism is a list of particles, rotors and rods (`bo
 weight forces on joints and pose, virtual work gives J_m^T (tau - Q_q) = Q_x. Actuators = C joints then bear C^-T tau,
 and their own friction.
 
-With more joints than freedoms many tau do. `least_norm`: each drive moves its own side, and what the platform needs is
-shared with the least norm, tau = Q_q + J_m (J_m^T J_m)^-1 Q_x. `least_peak`: see `torque_sharing`.
+With more joints than freedoms many tau are possible. `least_norm`: each drive moves its own side, and the platform's
+load is shared with the least norm, tau = Q_q + J_m (J_m^T J_m)^-1 Q_x. `least_peak`: see `torque_sharing`.
 """
 
 from __future__ import annotations
@@ -38,20 +38,20 @@ def inverse_dynamics(
     sharing: Sharing = "least_norm",
     torque_limits: Array | None = None,
 ) -> Array:
-    """Actuator torques (or forces) that make the platform follow a motion, their friction included.
+    """Actuator torques (or forces) that make the platform follow a motion, including friction.
 
     Args:
-        robot: its `bodies(...)` states the masses, its inertia's `drive_train` gear and friction.
+        robot: the robot; `bodies(...)` gives the masses, and the `drive_train` of its inertia gives gear and friction.
         payload: mass at the tool [kg].
         pose, velocity, acceleration: (..., n) the pose and its time derivatives.
-        sharing: how more actuators than freedoms share the work.
-        torque_limits: (m,) what `least_peak` weighs the torques by; all alike by default.
+        sharing: how the actuators share the work if there are more of them than freedoms.
+        torque_limits: (m,) limits that `least_peak` compares the torques with; by default all are equal.
 
     Returns:
-        (..., m) torques [N m] or forces [N] at the actuators, the gears' output; NaN out of reach.
+        (..., m) torques [N m] or forces [N] at the actuators, at the output of the gears; NaN out of reach.
 
     Raises:
-        InvalidValue: a payload, a sharing or limits that cannot be.
+        InvalidValue: the payload, the sharing or the limits are impossible.
     """
     given = [checked(v, name, robot.pose_names) for name, v in _named(pose, velocity, acceleration)]
     if sharing not in get_args(Sharing):
@@ -95,7 +95,7 @@ def friction(robot: Mechanism, speed: ca.SX) -> ca.SX:
 
 
 def require_payload(payload: float) -> None:
-    """Raise InvalidValue where a payload is not a mass."""
+    """Raise InvalidValue if a payload is not a mass."""
     if not (math.isfinite(payload) and payload >= 0.0):
         raise InvalidValue("payload", payload, "a finite mass >= 0 kg")
 
@@ -124,7 +124,7 @@ def _torques(
         j_m = model.inverse_jacobian
         cofactors, det = adjugate(j_m.T @ j_m)
         return on_joints + j_m @ (cofactors @ on_pose) / det
-    # J_q^-T sits outside the solve, so that a limb near its reach does not spoil the others.
+    # J_q^-T is outside the solve, so that a limb near its reach does not spoil the other limbs.
     transposed, det = adjugate(model.j_x_at_pose.T)
     return on_joints + model.j_q_at_pose * (transposed @ on_pose) / det
 

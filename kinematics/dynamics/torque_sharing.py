@@ -1,10 +1,10 @@
-"""How more actuators than freedoms share a load: the share whose largest torque over its limit is least.
+"""How more actuators than freedoms share a load so that the largest torque over its limit is as small as possible.
 
 All torques that do the same work are tau + N y, with N a basis of the null space of J^T, k = m - n columns. The least
 of max |r_i|, r = (tau + N y) / limit, is a small linear programme. By its dual it is the largest of |l . r| / sum |l_i|
 over the choices of k + 1 actuators, l their one relation l N = 0; in that choice all ratios have the size of the peak
-and the signs of l. Where l has zeros that does not fix y, and the best vertex of all choices and signs is taken. Where
-several shares have the least peak, one of them is given, and it may change between one pose and the next.
+and the signs of l. If l has zeros, this does not fix y, and the best vertex of all choices and signs is taken. If
+several shares have the least peak, one of them is returned, and it may change between one pose and the next.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ def least_peak(jacobian: Array, torque: Array, limits: Array) -> Array:
 
     Args:
         jacobian: (..., m, n) actuators' rates from the twist, of rank n.
-        torque: (..., m) any that do the work.
-        limits: (m,) > 0, what each is measured by.
+        torque: (..., m) any torques that do the work.
+        limits: (m,) > 0, the limit of each torque.
 
     Returns:
-        (..., m); NaN where the inputs are.
+        (..., m) torques; NaN where an input is NaN.
 
     Raises:
         InvalidValue: the limits are not m positive numbers.

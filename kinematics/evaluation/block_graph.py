@@ -1,7 +1,7 @@
-"""A program as a graph of scaled nodes, in which every value is k times a node and equal nodes are one.
+"""A program as a graph of scaled nodes: every value is k times a node, and equal nodes are one node.
 
-Factors, signs and constants travel in k, so what the geometry's numbers make superfluous disappears: (x / l) / (y / l)
-is x / y, and x - (x - y) is y. The value stays the same but for rounding where everything is finite.
+Factors, signs and constants are collected in k. So operations that the geometry's numbers make unnecessary disappear:
+(x / l) / (y / l) is x / y, and x - (x - y) is y. If everything is finite, the value is the same except for rounding.
 """
 
 from __future__ import annotations

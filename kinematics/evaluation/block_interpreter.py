@@ -1,7 +1,7 @@
-"""The block interpreter: runs any CasADi SX function over arrays of poses, with nothing compiled per model.
+"""The block interpreter: it runs any CasADi SX function over arrays of poses and compiles nothing for each model.
 
-A block of poses goes through one instruction at a time, so the cost of decoding it is shared by the block and the
-work rows stay in the first cache. The kernel is compiled once per machine and then cached by numba.
+Each instruction is applied to a whole block of poses, so decoding an instruction costs little, and the work rows stay
+in the first-level cache. The interpreter itself is compiled once on each machine and then cached by numba.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ SCALE, AFFINE, SUM, PRODUCT, PRODUCT_AFFINE, PRODUCT_SUM, TWO_PRODUCTS = (int(b)
 
 
 def evaluate(program: BlockProgram, *inputs: np.ndarray, blank: bool = False) -> list[np.ndarray]:
-    """Evaluate over poses, in chunks: beside the results no memory grows with the number of poses.
+    """Evaluate over poses, in chunks. Only the memory of the results grows with the number of poses.
 
     Args:
         inputs: one array (..., k_i) for each input of the function, all with the same leading shape.
@@ -41,7 +41,7 @@ def evaluate(program: BlockProgram, *inputs: np.ndarray, blank: bool = False) ->
         One array (..., rows, columns) for each output; a single column is dropped.
 
     Raises:
-        InvalidValue: an input has not the columns that the function wants.
+        InvalidValue: an input does not have the columns that the function needs.
     """
     lead = inputs[0].shape[:-1]
     count = math.prod(lead)

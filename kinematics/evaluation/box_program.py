@@ -1,7 +1,7 @@
-"""A program made ready for interval evaluation: what does not depend on the box is computed once, as intervals.
+"""A program prepared for interval evaluation: values that do not depend on the box are computed once, as intervals.
 
-The geometry's numbers enter as the exact values of their doubles and every constant that follows from them is an
-interval around the real number; nothing is folded in plain floating point, neither in a function nor in its gradient.
+The geometry's numbers are the exact values of their doubles. Every constant that follows from them is an interval
+around the real number. Nothing is computed in plain floating point, neither in a function nor in its gradient.
 """
 
 from __future__ import annotations

@@ -5,10 +5,11 @@ last place outward is enough for them. Sine, cosine and arctangent come from the
 which promise no error bound: here they are ASSUMED to be within four units in the last place of 1; tests hold them
 against an arbitrary-precision library.
 
-An operation that is not defined on all of a box (a root of something negative, a division by zero, an arctangent across
-its cut), or that has no rule, gives (-inf, inf); an operation on an operand with an infinite bound gives an infinite
-bound, but for the branch that a condition leaves aside. So finite bounds of an output tell that all that it is made of
-is defined on the whole box, and nothing is ever proved from the rest. A condition that is open on a box is [0, 1].
+An operation that is not defined on the whole box (a root of a negative number, a division by zero, an arctangent across
+its jump), or that has no rule, gives (-inf, inf). An operation on an operand with an infinite bound gives an infinite
+bound, except in the branch that a condition does not take. So if the bounds of an output are finite, everything that it
+is made of is defined on the whole box. Nothing is ever proved from infinite bounds. A condition that is true on a part
+of a box only is [0, 1].
 """
 
 from __future__ import annotations
@@ -47,7 +48,8 @@ def enclose(program: BoxProgram, low: np.ndarray, high: np.ndarray) -> tuple[np.
         low, high (k, outputs); never NaN.
 
     Raises:
-        InvalidValue: the boxes have not the columns that the function wants, or a bound is NaN or above its partner.
+        InvalidValue: the boxes do not have the columns that the function needs, or a bound is NaN, or low is above
+            high.
     """
     if low.shape != high.shape or low.ndim != 2 or low.shape[-1] != program.inputs:
         raise InvalidValue("shape of the boxes", (low.shape, high.shape), f"(k, {program.inputs}) twice")

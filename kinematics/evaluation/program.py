@@ -1,4 +1,4 @@
-"""A CasADi SX function as a flat list of instructions, for whoever wants to run it.
+"""A CasADi SX function as a flat list of instructions that other modules run.
 
 `Program` is the one form that the block interpreter (arrays of poses) and `run_through` (any other kind of number:
 symbols, intervals, arbitrary precision) work from.
@@ -63,7 +63,7 @@ _FROM_CASADI: dict[int, Op] = {getattr(ca, f"OP_{op.name}"): op for op in Op if 
 
 
 class UnknownOperation(LinkwrightError):
-    """The function uses an operation that the interpreter does not know; it never guesses."""
+    """The function uses an operation that the interpreter does not know."""
 
     def __init__(self, function: str, code: int) -> None:
         self.function, self.code = function, code

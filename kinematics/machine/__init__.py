@@ -1,4 +1,4 @@
-"""What a machine is made of, as data: its geometry, masses, drive train and joint ranges."""
+"""The data of a machine: its geometry, masses, drive train and joint ranges."""
 
 from kinematics.machine.bodies import UNIFORM, Bodies, InertiaRecord, Particle, Rod, Rotor
 from kinematics.machine.drive_train import REST, DriveTrain

@@ -18,16 +18,16 @@ UNIFORM = 2 / 3  # the `rod_middle` of a thin uniform rod: with 1/6 at each end,
 
 @dataclass(frozen=True)
 class InertiaRecord:
-    """Base of every mechanism's `Inertia`: numbers, or tuples of as many as the default has, finite and not negative.
+    """Base of every mechanism's `Inertia`: finite numbers >= 0, or tuples of as many numbers as the default has.
 
     Attributes:
-        rod_middle: share of each rod's mass that sits at its middle, the rest half at each end. 0 splits it between
-            the ends, as is usual; `UNIFORM` is a thin uniform rod, exactly; 1 - 4 I / (m l^2) is any other symmetric
-            one, of inertia I about its middle.
+        rod_middle: share of each rod's mass at its middle; half of the rest is at each end. 0 splits the mass between
+            the ends, which is usual. `UNIFORM` is exactly a thin uniform rod. 1 - 4 I / (m l^2) is any other symmetric
+            rod with inertia I about its middle.
         drive_train: gear, motor and friction of the actuators.
 
     Raises:
-        InvalidValue: naming the field.
+        InvalidValue: it names the field.
     """
 
     dimensions: ClassVar[Mapping[str, str]] = {}  # as in a geometry, of fields that a file may give in mm
@@ -47,7 +47,7 @@ class InertiaRecord:
                 raise InvalidField(type(self).__name__, f.name, value, f"{count}finite and >= 0")
             object.__setattr__(self, f.name, frozen(array))
         if self.rod_middle > 1.0:
-            raise InvalidField(type(self).__name__, "rod_middle", self.rod_middle, "a share, at most 1")
+            raise InvalidField(type(self).__name__, "rod_middle", self.rod_middle, "a number from 0 to 1")
 
     def check(self, count: int) -> None:
         """Check that every drive's data suits `count` actuators.

@@ -1,4 +1,4 @@
-"""Between motor and actuator: gear, motor inertia, friction."""
+"""The drive train between motor and actuator: gear, motor inertia, friction."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ REST = 1e-9  # [rad/s or m/s], above what rounding leaves of a speed of 0
 
 @dataclass(frozen=True)
 class DriveTrain:
-    """What stands behind each actuator; a number for all actuators, or one each. SI units.
+    """The drive train of each actuator: a number for all actuators, or one for each. SI units.
 
-    Torques, speeds and limits everywhere are the actuator's, the gear's output: a motor turns `gear_ratio` times as
-    fast and bears the torque over `gear_ratio`. Friction is the actuator's too: coulomb sign(speed) + viscous speed,
-    and a drive at rest, slower than `REST`, bears no Coulomb friction.
+    Torques, speeds and limits are always those of the actuator, at the output of the gear. The motor turns `gear_ratio`
+    times as fast, with the torque over `gear_ratio`. Friction is at the actuator too: coulomb sign(speed) + viscous
+    speed. A drive at rest, slower than `REST`, has no Coulomb friction.
 
     Attributes:
         gear_ratio: motor [rad] per actuator [rad or m].
@@ -28,7 +28,7 @@ class DriveTrain:
         viscous: [N m s/rad] or [N s/m].
 
     Raises:
-        InvalidValue: a value that is not finite or negative, or a gear ratio of 0.
+        InvalidValue: a value is not finite, negative, or a gear ratio of 0.
     """
 
     gear_ratio: PerActuator = 1.0
@@ -68,5 +68,5 @@ class DriveTrain:
         """
         value = getattr(self, name)
         if np.ndim(value) and np.shape(value) != (count,):
-            raise InvalidField("DriveTrain", name, value, f"one number or {count}, one an actuator")
+            raise InvalidField("DriveTrain", name, value, f"one number, or {count}: one for each actuator")
         return np.broadcast_to(np.asarray(value, dtype=float), (count,))

@@ -1,4 +1,4 @@
-"""How far a mechanism's joints go, driven ones and passive ones: hardware, beside the geometry and the masses."""
+"""The ranges of a mechanism's joints, driven and passive."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _TIP = 1e-26
 
 @dataclass(frozen=True)
 class JointRanges:
-    """What the drives allow.
+    """The ranges of the driven joints.
 
     Attributes:
-        joints: lowest and highest value of every driven joint, or such a pair for each [m or rad]; may be infinite.
+        joints: lowest and highest value, one pair for all driven joints or one for each [m or rad]; may be infinite.
     """
 
     dimensions: ClassVar[Mapping[str, str]] = {}  # as in a geometry, of the other fields
@@ -35,11 +35,11 @@ class JointRanges:
         """(count, 2) lowest and highest value of each driven joint.
 
         Raises:
-            InvalidValue: neither one pair nor one for each, or a pair not in rising order.
+            InvalidValue: there is not one pair, or one for each joint, or the lower value of a pair is not first.
         """
         given = numbers_of(self.joints)
         if given is None or given.shape not in ((2,), (count, 2)) or not (given[..., 0] < given[..., 1]).all():
-            wanted = f"lowest < highest, once or for each of {count} joints"
+            wanted = f"lowest < highest, one pair or {count} pairs"
             raise InvalidField(type(self).__name__, "joints", self.joints, wanted)
         return np.broadcast_to(given, (count, 2))
 
@@ -54,10 +54,10 @@ class JointRanges:
 
 @dataclass(frozen=True)
 class RodRanges(JointRanges):
-    """What drives and the joints at the rods' ends allow.
+    """The ranges of the driven joints and of the joints at the rods' ends.
 
     Attributes:
-        passive: the largest angle from rest at the drives' ends of the rods and at the platform's ends [rad].
+        passive: the largest angles from rest, at the rods' ends on the drives and at those on the platform [rad].
     """
 
     dimensions: ClassVar[Mapping[str, str]] = {"passive": "angle"}
@@ -68,7 +68,7 @@ class RodRanges(JointRanges):
         super().check(count)
         given = numbers_of(self.passive)
         if given is None or given.shape != (2,) or not ((given > 0.0) & (given <= math.pi)).all():
-            wanted = "two angles in (0, pi] rad: drives' ends, platform's ends"
+            wanted = "two angles in (0, pi] rad: rods' ends on the drives, on the platform"
             raise InvalidField(type(self).__name__, "passive", self.passive, wanted)
 
 

@@ -1,4 +1,4 @@
-"""Links, hinges and slides: a mechanism cut open into a tree, as simulators of multibody systems want it."""
+"""Links, hinges and slides: a mechanism whose loops are cut into a tree, as simulators of multibody systems need it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Margins, one file a kind: what must hold at every pose, and what implies it."""
+"""Margins, one file for each kind: numbers that must be large enough at every pose, and what proves their bounds."""
 
 from kinematics.margins.clearance import CLEARANCE
 from kinematics.margins.condition import INVERSE_CONDITION_NUMBER

@@ -1,4 +1,4 @@
-"""Clearance: the distance between members that must not meet."""
+"""Clearance: the distance between members that must not touch."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ class Clearance(Margin):
 
     name = "clearance"
     unit = "m"
-    words = "distance between the nearest two members' axes"
+    words = "distance between the axes of the two nearest members"
     holds_on_paths = True
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
-        """One a pair."""
+        """One component for each pair."""
         return ca.vertcat(*(ca.norm_2(segment_gap_symbolic(one, two)) for one, two in robot.segment_pairs()))
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:  # noqa: ARG002

@@ -15,7 +15,7 @@ _SURE = 1e-9  # by what a row sum, about 1 in the middle of a box, must be above
 
 
 class InverseConditionNumber(Margin):
-    """In [0, 1]: 0 on a singularity, 1 where the robot is isotropic. The 2-norm's, at the actuators."""
+    """In [0, 1]: 0 on a singularity, 1 where the robot is isotropic. By the 2-norm, at the actuators."""
 
     name = "inverse_condition_number"
     words = "inverse condition number of the homogeneous Jacobian"

@@ -1,4 +1,7 @@
-"""v_w, f_w and the FVI: the worst isotropic speed and force, and both over what is wanted; Shayya et al. (39), (40)."""
+"""v_w, f_w and the FVI: the worst isotropic speed and force, and both over the wanted ones; Shayya et al.
+
+(39), (40).
+"""
 
 from __future__ import annotations
 
@@ -31,7 +34,7 @@ class _Isotropic(Margin):
     place: ClassVar[int]  # in `isotropic` and `isotropic_components`
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:
-        """One an actuator."""
+        """One component for each actuator."""
         return isotropic_components(robot.homogeneous_jacobian(measure.length))[self.place]
 
     def smallest(self, robot: Mechanism, measure: Measure) -> ca.SX:
@@ -74,7 +77,7 @@ class Fvi(Margin):
     """min(v_w / v_wl, f_w / f_wl)."""
 
     name = "fvi"
-    words = "FVI: worst isotropic speed and force over what is wanted"
+    words = "FVI: worst isotropic speed and force over the wanted ones"
     of_jacobians = True
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:

@@ -1,4 +1,4 @@
-"""Joint travel: the room of the driven joints to the ends of their ranges."""
+"""Joint travel: the distance of the driven joints from the ends of their ranges."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from kinematics.model import Margin, Measure, Mechanism
 
 
 class JointTravel(Margin):
-    """Of each driven joint to each end of its range, in the joint's unit; infinite where nothing limits any."""
+    """Distance of each driven joint from each end of its range, in the joint's unit; infinite without ranges."""
 
     name = "joint_travel"
     unit = "rad or m"
-    words = "room to the nearest end of a driven joint's range"
+    words = "distance to the nearest end of a driven joint's range"
     holds_on_paths = True
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
-        """The lower ends, then the upper ones; only of joints that have them."""
+        """Components for the lower ends, then for the upper ends; only for joints with a range."""
         joints, limits = robot.model().inverse, robot.ranges.limits(len(robot.joint_names))
         rooms = [joints[i] - low for i, (low, _) in enumerate(limits) if np.isfinite(low)]
         rooms += [high - joints[i] for i, (_, high) in enumerate(limits) if np.isfinite(high)]

@@ -9,7 +9,7 @@ from kinematics.arrays import Array
 from kinematics.mathematics import determinant, volume
 from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
 
-_POSITIVE = 1e-250  # what is at least this is more than 0
+_POSITIVE = 1e-250  # a number of at least this is surely above 0
 
 
 class DeterminantOfJx(Margin):

@@ -1,4 +1,4 @@
-"""Passive joints: the room of the joints at the rods' ends to the ends of their ranges."""
+"""Passive joints: the distance of the joints at the rods' ends from the ends of their ranges."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
 
 
 class PassiveJoints(Margin):
-    """Of each joint at a rod's end [rad], against `ranges.passive`."""
+    """Distance of each joint at a rod's end from its limit in `ranges.passive` [rad]."""
 
     name = "passive_joint"
     unit = "rad"
-    words = "room to the nearest end of a passive joint's range"
+    words = "distance to the nearest end of a passive joint's range"
     holds_on_paths = True
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
-        """One or two a joint."""
+        """One or two components for each joint."""
         return _rows(robot, lambda joint, limits: joint.room(limits))
 
     def to_refute(self, robot: Mechanism, claim: ClaimSymbols) -> ToShow:

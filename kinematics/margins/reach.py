@@ -1,4 +1,4 @@
-"""Reach: how far each limb is from not reaching."""
+"""Reach: the distance of each limb from the end of its reach."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ from kinematics.model import Margin, Measure, Mechanism
 
 
 class Reach(Margin):
-    """Of each limb [m]; negative where it cannot reach."""
+    """Distance of each limb from the end of its reach [m]; negative if it cannot reach."""
 
     name = "reach"
     unit = "m"
-    words = "how far the worst limb is from not reaching"
+    words = "distance of the worst limb from the end of its reach"
     holds_on_paths = True
     beyond_reach = True
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
-        """One a limb."""
+        """One component for each limb."""
         model = robot.model()
         return robot.reach(model.pose, model.g)
 
     def limbs(self, robot: Mechanism) -> list[int]:
-        """In order."""
+        """The limbs in order."""
         model = robot.model()
         return [i + 1 for i in range(robot.reach(model.pose, model.g).numel())]
 

@@ -7,7 +7,7 @@ import casadi as ca
 from kinematics.arrays import Array
 from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow, signed
 
-_POSITIVE = 1e-250  # what is at least this is more than 0
+_POSITIVE = 1e-250  # a number of at least this is surely above 0
 
 
 def _normalised(robot: Mechanism) -> ca.SX:
@@ -25,11 +25,11 @@ class WorstOfJq(Margin):
     of_jacobians = True
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
-        """One a limb."""
+        """One component for each limb."""
         return _normalised(robot)
 
     def limbs(self, robot: Mechanism) -> list[int]:
-        """In order."""
+        """The limbs in order."""
         return [i + 1 for i in range(len(robot.joint_names))]
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:

@@ -1,4 +1,4 @@
-"""Mathematics that knows no robot: real roots, path tracking, symbolic linear algebra, distances, orientations."""
+"""General mathematics: real roots, path tracking, symbolic linear algebra, distances, orientations."""
 
 from kinematics.mathematics.bisection import bisected
 from kinematics.mathematics.distinct_solutions import distinct, gaps, working_first

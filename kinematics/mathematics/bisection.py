@@ -13,13 +13,13 @@ from kinematics.arrays import Array
 def bisected(
     holds: Callable[[Array], ArrayLike], low: ArrayLike, high: ArrayLike, tolerance: ArrayLike = 0.0
 ) -> tuple[Array, Array]:
-    """The ends (...) of intervals from where a condition holds to where it does not.
+    """Short intervals, each with an end (...) where a condition holds and an end (...) where it does not.
 
     Args:
-        holds: whether it does at arguments (...), (...) answers; it is taken to hold at `low` and not at `high`, and is
-            asked at neither.
-        low, high: (...) the ends to start from.
-        tolerance: (...) halving ends at intervals of this length; with 0, where no double lies between their ends.
+        holds: the condition, from arguments (...) to answers (...). It must hold at `low` and fail at `high`; it is not
+            called there.
+        low, high: (...) the first ends.
+        tolerance: (...) halving stops at intervals of this length; with 0, when no double is left between the ends.
     """
     low, high = (np.array(end, dtype=float) for end in np.broadcast_arrays(low, high))
     middle = 0.5 * low + 0.5 * high

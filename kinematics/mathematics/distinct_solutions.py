@@ -1,4 +1,4 @@
-"""Which of several numerical solutions are one."""
+"""Find numerical solutions that are the same, and keep each once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where rounding would make a number impossible that is exactly possible: the square root at a double root."""
+"""At a double root, rounding can make the number under a square root negative. This corrects it to 0."""
 
 from __future__ import annotations
 

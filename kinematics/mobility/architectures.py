@@ -1,7 +1,7 @@
 """Mobility of parallel architectures by their closed loops (Khalil and Dombre 2002, [8.1]-[8.4]).
 
-The count takes no account of special dimensions, so it may be wrong where a geometry is special: the chapter says that
-it holds "for a large number of architectures", and `ARCHITECTURES` are the ones that it lists.
+The count ignores dimensions, so it may be wrong for a special geometry. The chapter says that it holds "for a large
+number of architectures"; `ARCHITECTURES` are those that it lists.
 """
 
 from __future__ import annotations

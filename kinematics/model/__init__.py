@@ -1,4 +1,4 @@
-"""A mechanism's model: what it defines, and what follows from its loop closure."""
+"""A mechanism's model: its definition, and everything that is derived from its loop closure."""
 
 from kinematics.model.aspect import in_aspect, joined_to_home
 from kinematics.model.continuation import continued, polished, reached

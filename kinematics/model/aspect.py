@@ -1,8 +1,8 @@
-"""The aspect that home is in: the poses and joints that are reached from there without a singularity of either kind.
+"""The aspect of home: the poses and joints that the robot can reach from home without a singularity of either kind.
 
-Within it no J_q,i and not the determinant of J_x changes its sign. Joints that belong to several poses mostly have one
-with home's signs; that is the pose in home's assembly mode. Wenger and Chablat, "Uniqueness domains in the workspace of
-parallel manipulators", 1997.
+Within an aspect no J_q,i changes its sign, and neither does the determinant of J_x. If joints belong to several poses,
+mostly one of them has home's signs. This is the pose in home's assembly mode. Wenger and Chablat, "Uniqueness
+domains in the workspace of parallel manipulators", 1997.
 """
 
 from __future__ import annotations
@@ -23,25 +23,26 @@ _SINGULAR = 1e-6  # of home's value: where rounding of a double root, halved dig
 
 
 def in_aspect(robot: Mechanism, poses: Array, joints: Array) -> Array:
-    """(k,) whether det J_x has home's sign at poses (k, n) with joints (k, m); where home has none, True."""
+    """(k,) whether det J_x has home's sign at poses (k, n) with joints (k, m); True if home has no sign."""
     return ~(_over_home(robot, poses, joints)[:, 0] < -_SINGULAR)
 
 
 def joined_to_home(robot: Mechanism, rows: Array, poses: Array, joints: Array) -> Array:
-    """Of candidates the pose in home's assembly mode; of several the nearest to home.
+    """The candidate in home's assembly mode. If there are several, the nearest to home.
 
-    It has home's signs, and so has every pose on the line from home to it; else the pose to which home leads on a
-    straight line of the joints. Where no candidate has home's signs of J_q, as joints of another working mode have
-    none, that of det J_x decides. Any candidate serves where home itself is singular or out of reach.
+    First choice: a pose with home's signs, where every pose on the line from home to it has them too. Second choice:
+    the pose that a straight line of the joints leads to from home. If no candidate has home's signs of J_q, as for
+    joints of another working mode, only the sign of det J_x decides. If home itself is singular or out of reach, any
+    candidate is accepted.
 
     Args:
-        robot: with as many joints as freedoms.
-        rows: (j,) to which joints each candidate belongs.
-        poses: (j, n) candidates, the same pose more than once or not; NaN for none.
+        robot: a robot with as many joints as freedoms.
+        rows: (j,) the row of `joints` that each candidate belongs to.
+        poses: (j, n) candidates. A pose may be there more than once; NaN is no candidate.
         joints: (k, m).
 
     Returns:
-        (k, n); NaN where no pose is joined to home.
+        (k, n) poses; NaN if no pose is joined to home.
     """
     real = np.isfinite(poses).all(axis=1)
     rows, poses = rows[real], poses[real]

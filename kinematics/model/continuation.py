@@ -1,9 +1,9 @@
-"""The forward model near a known pose: followed along a straight line of the joints, by Newton's method in small steps.
+"""The forward model near a known pose. It follows a straight line of the joints, by Newton's method in small steps.
 
-The joints go from those of the known pose to the ones that are asked for, and the pose follows without passing a
-singularity: so it stays in its assembly mode. A step counts only where Newton's method contracts at once; else it is
-halved. All poses are followed side by side, each with a step of its own. Where the line of the joints meets a
-singularity, `forward_near` looks for a pose to which a line of the pose leads.
+The joints go from those of the known pose to the wanted ones. The pose follows without passing a singularity, so it
+stays in its assembly mode. A step is accepted only if Newton's method contracts at once; else the step is halved. All
+poses are followed together, each with its own step. If the line of the joints meets a singularity, `forward_near`
+searches for a pose that a straight line of the pose leads to.
 """
 
 from __future__ import annotations
@@ -56,11 +56,11 @@ def continued(robot: Mechanism, joints: Array, near: Array) -> Array:
     """The poses with these joints that are reached from known poses without a singularity on the way.
 
     Args:
-        joints: (..., m); an angle may be any number of turns off.
-        near: (n,) or (..., n) known poses, in any assembly mode of the working mode's limbs.
+        joints: (..., m); an angle may differ by any number of turns.
+        near: (n,) or (..., n) known poses, in any assembly mode, with limbs in the working mode.
 
     Returns:
-        (..., n); NaN where the known pose is out of reach, or where the way from it meets a singularity.
+        (..., n) poses; NaN if the known pose is out of reach, or if the way from it meets a singularity.
     """
     start, target = together(near, joints)
     lead = start.shape[:-1]

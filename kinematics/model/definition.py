@@ -1,6 +1,6 @@
-"""What a mechanism writes: its data, its closure and its closed forms. `Mechanism` derives the rest.
+"""The definition of a mechanism: its data, its closure and its closed forms. `Mechanism` derives the rest.
 
-A new mechanism is one file with these hooks, and its name in `MECHANISMS`; docs/new_mechanism.md walks through them.
+A new mechanism is one file with these hooks, and its name in `MECHANISMS`; docs/new_mechanism.md explains them.
 """
 
 from __future__ import annotations
@@ -38,19 +38,19 @@ class Definition(ABC):
 
     @classmethod
     def lacking(cls) -> tuple[str, ...]:
-        """The hooks without a default that the class does not write."""
+        """The hooks without a default that the class does not define."""
         data = (name for name in Definition.__annotations__ if not hasattr(cls, name))
         return tuple(sorted({*cls.__abstractmethods__, *data}))
 
     @staticmethod
     @abstractmethod
     def closure(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(m,) loop closure, one row a limb."""
+        """(m,) loop closure, one row for each limb."""
 
     @staticmethod
     @abstractmethod
     def default_home(geometry: Any) -> tuple[float, ...]:
-        """(n,) a pose about in the middle of the workspace of a geometry of any size."""
+        """(n,) a pose near the middle of the workspace, for a geometry of any size."""
 
     @staticmethod
     @abstractmethod
@@ -65,24 +65,24 @@ class Definition(ABC):
     @staticmethod
     @abstractmethod
     def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """How far each limb is from not reaching [m], one row a limb; negative where it cannot."""
+        """(m,) distance of each limb from the end of its reach [m]; negative where it cannot reach."""
 
     @classmethod
     def limb_roots(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """Numbers that are NaN where a limb cannot reach: the inverse model's roots where they are at hand."""
+        """Numbers that are NaN where a limb cannot reach, such as the roots of the inverse model."""
         return ca.sqrt(cls.reach(pose, g))
 
     @staticmethod
     @abstractmethod
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
-        """What J_q's diagonal (m,) and det J_x are divided by, so that both lie in [-1, 1].
+        """Divisors that bring J_q's diagonal (m,) and det J_x into [-1, 1].
 
-        With m > n it is sqrt(det J_x^T J_x) that takes the determinant's place.
+        With m > n, sqrt(det J_x^T J_x) replaces the determinant.
         """
 
     @abstractmethod
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
-        """The masses that move; `payload` [kg] sits at the tool."""
+        """The masses that move; `payload` [kg] is at the tool."""
 
     @staticmethod
     @abstractmethod
@@ -96,19 +96,22 @@ class Definition(ABC):
         g: SimpleNamespace,  # noqa: ARG002
         reference: Reference,  # noqa: ARG002
     ) -> Tree | None:
-        """The links and their joints, for simulators; None where they follow from the bodies.
+        """The links and their joints, for simulators; None if they follow from the bodies.
 
-        They do where each link is moved by one driven joint, or by the pose alone: x, y, z slide it, and theta, or yaw,
-        pitch and roll, turn it about the tool point.
+        They follow if each link is moved by one driven joint, or by the pose alone: x, y, z slide it, and theta, or
+        yaw, pitch and roll, turn it about the tool point.
         """
         return None
 
     def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:  # noqa: ARG002
-        """The joints at the rods' ends; where there are any, `Ranges` limits them and `PASSIVE_JOINT` is a margin."""
+        """The joints at the rods' ends. If there are any, `Ranges` limits them and `PASSIVE_JOINT` is a margin."""
         return []
 
     def segment_pairs(self) -> list[tuple[ca.SX, ca.SX]]:
-        """Members (3, 2) at a pose that must not meet, ends in columns; with any, `CLEARANCE` [m] is a margin."""
+        """Pairs of members (3, 2) that must not touch, ends in columns.
+
+        If there are any, `CLEARANCE` [m] is a margin.
+        """
         return []
 
     @classmethod
@@ -132,12 +135,12 @@ class Definition(ABC):
 
     @classmethod
     def closure_by_twist(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(m, n) derivative of the closure by the twist; to be replaced where Euler angles would spoil it."""
+        """(m, n) derivative of the closure by the twist. Override it if the pose has Euler angles."""
         return ca.jacobian(cls.closure(pose, joints, g), pose) @ cls.pose_rate_map(pose)
 
     @property
     def actuator_names(self) -> tuple[str, ...]:
-        """What C joints is called; the joints themselves unless the drives couple them."""
+        """The names of the actuators (C joints); the joints' names unless drives couple joints."""
         return self.joint_names
 
     @property
@@ -148,7 +151,7 @@ class Definition(ABC):
     @property
     @abstractmethod
     def characteristic_length(self) -> float:
-        """What makes a rotation a length [m]."""
+        """The length that makes a rotation a length [m]."""
 
     @abstractmethod
     def assembly_modes(self, joints: Array) -> Array:
@@ -160,6 +163,6 @@ class Definition(ABC):
 
     @staticmethod
     def moved(pose: Array, twist: Array) -> Array:
-        """(k, n) poses after small displacements (k, n); not a sum where the pose holds Euler angles."""
+        """(k, n) poses after small displacements (k, n). With Euler angles this is not a sum."""
         result: Array = pose + twist
         return result

@@ -22,7 +22,7 @@ _LEAST, _MOST = 1e-50, 1e50  # of a bound of the FVI: squares of products of two
 
 @dataclass(frozen=True)
 class FviBounds:
-    """What the actuators give and what is wanted of the worst direction.
+    """What the actuators give, and what is wanted in the worst direction.
 
     Attributes:
         joint_speed: q'_max of every actuator [rad/s or m/s].

@@ -1,9 +1,9 @@
-"""More measured joints than freedoms: the pose that fits them best, and what their disagreement reveals.
+"""More measured joints than freedoms: the pose that fits them best, and the faults that their differences show.
 
 m joints and n freedoms leave m - n redundancy equations. To first order a disagreement is the parity vector V^T r, with
 V an orthonormal basis of the left null space of J_m; a fault f of encoder i alone gives f v_i, v_i the i-th row of V,
-its signature. Encoders with parallel signatures cannot be told apart, one with v_i = 0 cannot be checked at all. The
-check below does not linearise: it leaves out one encoder at a time and asks whether the others agree.
+its signature. Encoders with parallel signatures cannot be told apart. An encoder with v_i = 0 cannot be checked. The
+check below does not linearise. It leaves out one encoder at a time and tests whether the others agree.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ class BestFit(NamedTuple):
 
 
 class EncoderCheck(NamedTuple):
-    """What the redundancy says of the encoders, on the assumption that at most one of them is faulty.
+    """The result of the check of the encoders, on the assumption that at most one of them is faulty.
 
-    More faults may pass for one: of one of them, or, at few poses, of an encoder that is sound.
+    Several faults may look like one: of one of these encoders or, at a few poses, of a good encoder.
 
     Attributes:
         pose: (..., n) the best fit to all joints that are not suspected (to all, where none is); NaN where those do

@@ -1,4 +1,4 @@
-"""Straight lines of the pose: whether one leads from a pose to another without a parallel singularity on the way."""
+"""Check that a straight line from one pose to another passes no parallel singularity."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Programs of a robot: expressions with its numbers in place of the geometry's symbols, compiled once and kept.
+"""Programs of a robot: expressions with the robot's numbers instead of the geometry's symbols, compiled once and kept.
 
-A program is known by the robot's value, by the function that writes its expressions and by what else that function is
-given. So no name can stand for two expressions, and what varies from call to call, such as a payload, is an input.
+The key of a program is the robot's value, the function that writes its expressions, and the other arguments of that
+function. So no key can mean two expressions. A value that changes from call to call, such as a payload, is an input.
 """
 
 from __future__ import annotations

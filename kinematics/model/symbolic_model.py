@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 class Model:
     """Expressions in the symbols `pose` (n,), `joints` (m,) and `geometry` (k,); `g` names the geometry's fields.
 
-    The closure phi(pose, joints; geometry) = 0 has one row a limb and its sign is chosen so that
-    J_q = d phi / d joints and J_x = -d phi / d twist are the paper's; then J_q q' = J_x t. The constant matrix `drives`
-    C takes joints to actuators.
+    The closure phi(pose, joints; geometry) = 0 has one row for each limb. Its sign is such that J_q = d phi / d joints
+    and J_x = -d phi / d twist are those of the paper; then J_q q' = J_x t. The constant matrix `drives` C maps joints
+    to actuators.
 
-    The working mode says which joints belong to a pose (`inverse`, `at_pose`); the closure does not depend on it.
+    The working mode decides which joints belong to a pose (`inverse`, `at_pose`). The closure does not depend on it.
 
     Raises:
-        TypeError: a limb's closure holds another limb's joint, or there is not one row a joint.
+        TypeError: a limb's closure depends on another limb's joint, or there is not one row for each joint.
     """
 
     def __init__(self, mechanism: type[Mechanism], mode: Mode) -> None:
@@ -37,7 +37,7 @@ class Model:
         self.drives = mechanism.drives(self.g)
         j_q = ca.jacobian(self.closure, self.joints)
         if self.closure.shape[0] != self.joints.shape[0] or not j_q.sparsity().is_diag():
-            raise TypeError(f"{mechanism.__name__}: the closure needs one row a limb, each with its own joint")
+            raise TypeError(f"{mechanism.__name__}: each limb needs one row of the closure, with its own joint only")
         self.j_q = ca.diag(j_q)
         self.j_x = -mechanism.closure_by_twist(self.pose, self.joints, self.g)
 

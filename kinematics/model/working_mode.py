@@ -1,7 +1,7 @@
-"""The working mode: which branch of its inverse model each limb keeps, and where each joint angle is cut.
+"""The working mode: the branch of the inverse model of each limb, and where each joint angle jumps by a turn (its cut).
 
-Both are data of the robot. They follow from the pose that it works around, its home, and are fixed from then on: a
-limb that kept another branch would have to pass a singularity first.
+Both are data of the robot. They follow from its home, the pose that it works around, and do not change: to reach
+another branch a limb would have to pass a singularity.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ class Mode(NamedTuple):
     """A working mode of m limbs.
 
     Attributes:
-        branches: (m,) +1 for the branch that the mechanism's documentation calls the usual one, else -1.
-        quarters: (m,) the quarter turn around which each angle is continuous: its cut lies opposite. 0 of a length.
+        branches: (m,) +1 for the usual branch in the mechanism's documentation, else -1.
+        quarters: (m,) the quarter turn in the middle of each angle's turn; its cut is opposite. 0 for a length.
     """
 
     branches: tuple[int, ...]

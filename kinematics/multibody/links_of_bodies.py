@@ -1,7 +1,7 @@
-"""The links of a mechanism and their joints, as they follow from the points of its bodies.
+"""The links of a mechanism and their joints, derived from the points of its bodies.
 
-A link is moved by one driven joint, or by coordinates of the pose. Its joints are named after them, and it is checked
-that they move each of its points as the bodies say.
+A link is moved by one driven joint, or by coordinates of the pose. Its joints have the same names. A check makes sure
+that they move each point of the link as the bodies do.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def links_of_bodies(robot: Mechanism, model: Model, bodies: Bodies) -> Tree:
     """The tree whose links are those of the bodies.
 
     Raises:
-        InvalidValue: naming a link that is moved in another way, or a joint that moves none.
+        InvalidValue: it names a link that is moved in another way, or a joint that moves no link.
     """
     points = _points_by_link(bodies)
     names = (*robot.joint_names, *robot.pose_names)
@@ -146,7 +146,7 @@ def _check(robot: Mechanism, model: Model, tree: Tree, points: dict[str, list[ca
         off = np.abs(says - moves) > _SAME * np.abs(says).max()
         for k, link in enumerate(tree.links):
             if off[ends[k] : ends[k + 1]].any():
-                raise _unclear(robot, f"{link.name}, which moves otherwise")
+                raise _unclear(robot, f"{link.name}, which moves in another way")
 
 
 def _velocity(joint: TreeJoint | None, point: ca.SX) -> ca.SX:
@@ -166,5 +166,5 @@ def _states(robot: Mechanism) -> list[Array]:
 
 
 def _unclear(robot: Mechanism, found: str) -> InvalidValue:
-    expected = "links that one joint moves, or the pose alone; or the hook `link_tree`, which says how they move"
+    expected = "links that one joint or the pose alone moves; or the hook `link_tree`, which describes how they move"
     return InvalidValue(f"links of {type(robot).__name__} for simulators", found, expected)

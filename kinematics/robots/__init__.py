@@ -1,4 +1,4 @@
-"""The mechanisms: one file or one room each."""
+"""The mechanisms: one file or one room for each."""
 
 from kinematics.robots.delta import Delta
 from kinematics.robots.hexa import Hexa

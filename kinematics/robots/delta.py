@@ -38,7 +38,7 @@ class DeltaGeometry(GeometryRecord):
     """A pick-and-place robot of usual size: an assumption of this project, as the chapter gives no dimensions.
 
     Raises:
-        InvalidGeometry: besides what any geometry refuses: two azimuths are equal.
+        InvalidGeometry: as for any geometry; or two azimuths are equal.
     """
 
     base_radius: float = length(0.200, doc="R, of the actuators' axes")
@@ -50,22 +50,22 @@ class DeltaGeometry(GeometryRecord):
     def __post_init__(self) -> None:
         super().__post_init__()
         if abs(_triangle(np.array(self.azimuths))) < 1e-9:
-            raise self._invalid("azimuths", self.azimuths, "three directions, no two the same")
+            raise self._invalid("azimuths", self.azimuths, "three different directions")
 
 
 @dataclass(frozen=True)
 class DeltaInertia(ArmInertia):
-    """Arms as everywhere here; and the plate.
+    """The masses of the arms and the plate.
 
     Attributes:
-        plate_mass: the payload is a point on it.
+        plate_mass: mass of the plate; the payload is a point on it.
     """
 
     plate_mass: float = 0.45
 
 
 class Delta(RotaryLimbs):
-    """Pose [x, y, z] of the plate's centre, joints q1..q3 measured from e_z outward; elbows out, usually."""
+    """Pose [x, y, z] of the plate's centre, joints q1..q3 measured from e_z outward. Elbows are usually out."""
 
     Geometry = DeltaGeometry
     Inertia = DeltaInertia
@@ -81,12 +81,12 @@ class Delta(RotaryLimbs):
 
     @property
     def characteristic_length(self) -> float:
-        """1 m, and without effect: a translation has no rotation to be made a length."""
+        """1 m, without effect, as the plate does not rotate."""
         return 1.0
 
     @staticmethod
     def default_home(geometry: DeltaGeometry) -> tuple[float, ...]:
-        """On the axis below the drives, in the middle of the reach."""
+        """A pose on the axis below the drives, in the middle of the reach."""
         g = geometry
         return 0.0, 0.0, -height_in_reach(g.base_radius, g.platform_radius, g.arm_length, g.rod_length)
 
@@ -140,9 +140,10 @@ class Delta(RotaryLimbs):
         return result
 
     def assembly_modes(self, joints: Array) -> Array:
-        """(3,) -> (k, 3), every real pose with these joints, none or two (one where they meet); the working one first.
+        """(3,) -> (k, 3), every real pose with these joints: none, two, or one if both are equal. That of home's mode
+        is first.
 
-        None where the spheres' centres lie on one line, as there is no isolated pose then.
+        If the spheres' centres are on one line there is none, as no pose is isolated then.
         """
         joints = self._one(joints)
         both = self._both(joints)[[self._side, 1 - self._side]]

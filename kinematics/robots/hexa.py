@@ -48,8 +48,8 @@ class HexaGeometry(GeometryRecord):
     """A robot of a Delta's size: an assumption of this project, as the chapter gives no dimensions.
 
     Raises:
-        InvalidGeometry: besides what any geometry refuses: the platform's points lie on one line, about which the
-            platform then turns freely; or two limbs are one, with the same drive, arm and platform point.
+        InvalidGeometry: as for any geometry; or the platform's points are on one line, about which the platform could
+            turn freely; or two limbs have the same drive, arm and platform point.
     """
 
     base_points: tuple[tuple[float, ...], ...] = length(_BASE, minimum=None, doc="P_i, on the arms' axes")
@@ -71,16 +71,16 @@ class HexaGeometry(GeometryRecord):
         turned = self.arm_length * np.exp(1j * np.array(self.arm_azimuths))
         limbs = np.column_stack([self.base_points, turned.real, turned.imag, points])
         if pair := twins(limbs, np.abs(limbs).max()):
-            reason = f"limbs {pair[0]} and {pair[1]} share drive and arm too, det J_x is zero in every pose"
-            raise self._invalid("platform_points", self.platform_points, f"two points for two limbs: {reason}")
+            reason = f"limbs {pair[0]} and {pair[1]} have the same drive and arm, so det J_x is zero at every pose"
+            raise self._invalid("platform_points", self.platform_points, f"a different point for each limb: {reason}")
 
 
 @dataclass(frozen=True)
 class HexaInertia(ArmInertia):
-    """Arms as everywhere here, with one rod each; and the platform.
+    """The masses of the arms, with one rod each, and of the platform.
 
     Attributes:
-        platform_mass: in six equal particles at the B_i; the payload is a particle at the tool point.
+        platform_mass: six equal particles at the B_i; the payload is a particle at the tool point.
     """
 
     rod_mass: float = 0.13
@@ -88,10 +88,10 @@ class HexaInertia(ArmInertia):
 
 
 class Hexa(SixLegs, RotaryLimbs):
-    """Pose [x, y, z, roll, pitch, yaw], joints q1..q6 measured from e_z outward; elbows out unless
-    `home_joints` say.
+    """Pose [x, y, z, roll, pitch, yaw], joints q1..q6 measured from e_z outward. Elbows are out, unless `home_joints`
+    choose otherwise.
 
-    Orientation and twist are the Gough-Stewart platform's.
+    Orientation and twist are defined as for the Gough-Stewart platform.
     """
 
     Geometry = HexaGeometry
@@ -105,7 +105,7 @@ class Hexa(SixLegs, RotaryLimbs):
 
     @staticmethod
     def default_home(geometry: HexaGeometry) -> tuple[float, ...]:
-        """The platform below the base by a share of arm and rod together, turned to match it best."""
+        """The platform below the base, by a share of arm and rod together, in the rotation that matches it best."""
         base, platform = (np.array(p) for p in (geometry.base_points, geometry.platform_points))
         below = _DEPTH * (geometry.arm_length + geometry.rod_length)
         return tuple(matched_pose(base, platform, np.array([0.0, 0.0, -below])).tolist())
@@ -124,7 +124,7 @@ class Hexa(SixLegs, RotaryLimbs):
 
     @classmethod
     def platform_axes(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """Parallel to the arms' axes where the platform is not turned."""
+        """Unit directions parallel to the arms' axes when the platform is not turned."""
         return SixLegs.rotation(pose) @ cls.limbs(g).axes()
 
     @staticmethod
@@ -163,7 +163,7 @@ class Hexa(SixLegs, RotaryLimbs):
     # The forward model.
 
     def leg_errors(self, pose: Array, joints: Array) -> tuple[Array, Array]:
-        """(k, 6) what the rods lack to reach from the elbows to the platform [m], and the hexapod's Jacobian."""
+        """(k, 6) missing length of each rod from elbow to platform [m], and the hexapod's Jacobian."""
         errors, jacobian = evaluate(self.program(_rods_as_legs), pose, joints)
         return errors, jacobian
 
@@ -176,7 +176,7 @@ class Hexa(SixLegs, RotaryLimbs):
     def assembly_modes(self, joints: Array) -> Array:
         """(6,) -> (k, 6), every real pose with these joints, at most 40; the nearest to home first.
 
-        Takes some seconds, as other joints make another hexapod.
+        It takes some seconds, as each set of joints gives another hexapod.
 
         Raises:
             SingularArchitecture: elbows and platform are dependent at every pose, so poses are not isolated.

@@ -1,6 +1,6 @@
 """A cycle: the way there and the way back, in pieces that are timed from rest to rest.
 
-Where the tangent jumps, as at the turning point, no law may pass at speed: there a piece ends and the next one starts.
+Where the tangent jumps, as at the turning point, no law can pass at speed. A piece ends there and the next one starts.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from trajectory.motions import InTime, PoseSpline, TimedMotion
 from trajectory.paths import Path, Reversed, pieces, places
 from trajectory.verification import PathCertificate, Verification, Way, certify_path, verify, worst_of
 
-_SAME = 1e-9  # rad, or of the path's length: no further apart are two poses the same
+_SAME = 1e-9  # rad, or times the path's length: two poses that are closer are the same
 
 
 @dataclass(frozen=True, eq=False)
 class Piece(Value):
-    """One piece, from rest to rest, within its limits.
+    """One piece of a cycle, from rest to rest, within its limits.
 
     Attributes:
-        path: that was asked for.
+        path: the path that was asked for.
         payload: mass at the tool on it [kg].
         timed: the motion, its verification and the factor of its repair.
     """
@@ -39,24 +39,24 @@ class Piece(Value):
 
     @property
     def motion(self) -> TimedMotion:
-        """Of the pose, in time."""
+        """The motion of the pose in time."""
         return self.timed.motion
 
     @property
     def duration(self) -> float:
-        """Of this piece [s]."""
+        """The duration of this piece [s]."""
         return self.timed.motion.duration
 
 
 @dataclass(frozen=True, eq=False)
 class Cycle(Value):
-    """A path that was proved, and its pieces in order, with the limits and the robot for which they are timed.
+    """A proved path and its timed pieces in order, with their limits and their robot.
 
     Attributes:
-        certificate: that every pose of the path, or of the motions that left it, is within reach and not singular.
-        limits: that are kept.
-        not_kept: fields of the limits that were asked for too, but that the timing law cannot keep.
-        there, back: the pieces of each way; none back where the path ends in the pose where it starts.
+        certificate: proof that every pose is within reach and not singular: of the path, or of motions that leave it.
+        limits: the limits that are kept.
+        not_kept: fields of other limits that were asked for, but that the timing law cannot keep.
+        there, back: the pieces of each way. There is no way back if the path ends at its own start.
     """
 
     robot: Mechanism
@@ -69,36 +69,36 @@ class Cycle(Value):
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
-        """Of both ways, in order."""
+        """The pieces of both ways, in order."""
         return (*self.there, *self.back)
 
     @property
     def ways(self) -> tuple[Way, ...]:
-        """What the poses pass: the path, or the pieces' own motions where these left it."""
+        """The ways of the poses: the path, or the pieces' own motions if these leave it."""
         own = tuple(InTime(p.motion, self.path.pose_names) for p in self.pieces if isinstance(p.motion, PoseSpline))
         return own or (self.path,)
 
     @property
     def duration(self) -> float:
-        """Of all pieces [s]."""
+        """The duration of all pieces [s]."""
         return sum(piece.duration for piece in self.pieces)
 
     @property
     def proved(self) -> dict[str, float]:
-        """Each limited quantity over its limit is at most this at every instant."""
+        """Proved upper bounds of each limited quantity over its limit, at every instant."""
         bounds = [piece.timed.verification.proved for piece in self.pieces]
         return {name: max(bound[name] for bound in bounds) for name in bounds[0]}
 
     @property
     def half(self) -> float:
-        """Of the way there [s]."""
+        """The duration of the way there [s]."""
         return sum(piece.duration for piece in self.there)
 
     def stretched_to(self, period: float) -> Cycle:
-        """Every piece stretched to a whole number of periods, so that each pose at rest is a set-point; verified again.
+        """Stretch every piece to a whole number of periods, so that each pose at rest is a set-point; verify it again.
 
         Args:
-            period: of the drives' bus [s].
+            period: period of the drives' bus [s].
 
         Raises:
             InvalidValue: the period is not finite and positive.
@@ -123,23 +123,24 @@ def there_and_back(
     payload_back: float | None = None,
     cannot_keep: tuple[str, ...] = (),
 ) -> Cycle:
-    """Prove a path, and time it and its reverse; each piece is verified, and repaired by at most 1 %.
+    """Prove a path, and time it and its reverse. Each piece is verified, and repaired by at most 1 %.
 
-    A path with corners that are not rounded is timed piece by piece, and one that ends where it starts is not reversed.
-    Each piece keeps the RMS torque limit by itself, so that the cycle does with any payloads.
+    A path with corners that are not rounded is timed piece by piece. A path that ends at its own start is not reversed.
+    Each piece keeps the RMS torque limit, so the cycle keeps it with any payloads.
 
     Args:
         robot: any mechanism with the path's kind of pose.
         path: the way there.
-        limits: of joints and tool.
+        limits: limits of joints and tool.
         payload: mass at the tool on the way there [kg].
-        timing: the method, such as `time_optimal`.
-        payload_back: mass on the way back [kg]; as on the way there when None.
-        cannot_keep: fields of the limits that `timing` refuses: left out, and named by the cycle where they are set.
+        timing: the timing law, such as `time_optimal`.
+        payload_back: mass on the way back [kg]; None takes `payload`.
+        cannot_keep: fields of the limits that `timing` refuses. They are left out; if set, the cycle names them.
 
     Raises:
-        PathRefused: a pose of the path is out of reach or singular, or could not be proved not to be.
-        LimitsExceeded: a law breaks its limits by more than may be repaired; and what `timing` raises.
+        PathRefused: a pose of the path is out of reach or singular, or it could not be proved that none is.
+        LimitsExceeded: a law breaks its limits by more than may be repaired.
+        LinkwrightError: any error of `timing`.
     """
     certificate = certify_path(robot, path)
     left_out = tuple(name for name in cannot_keep if getattr(limits, name) is not None)
@@ -161,14 +162,14 @@ def there_and_back(
 
 
 def is_closed(path: Path) -> bool:
-    """Whether a path ends in the pose where it starts, an angle a turn on being another one."""
+    """Whether a path ends in the pose where it starts. An angle that differs by a turn is another pose."""
     start, end = path.evaluate(np.array([0.0, path.length]), 0)[0]
     units = np.where(np.arange(start.size) < places(path.pose_names), path.length, 1.0)
     return bool((np.abs(end - start) <= _SAME * units).all())
 
 
 def periods_of(duration: float, period: float) -> int:
-    """The least whole number of periods that is no shorter, but for rounding.
+    """The least whole number of periods that is not shorter than `duration`, except for rounding.
 
     Raises:
         InvalidValue: the period is not finite and positive.

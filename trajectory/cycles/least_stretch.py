@@ -1,9 +1,10 @@
-"""Repair of a motion that breaks its limits by a little: the least stretch of time that brings every peak within.
+"""Repair of a motion that breaks its limits by a little: the least stretch of time that brings every peak within
+limits.
 
-Stretching time by f divides speeds by f, accelerations by f^2 and jerks by f^3. Torque keeps what it needs at rest:
-with r = 1 / f it is quadratic in r, and its mean square a quartic, so that each sample that is too high gives its
-largest r. No stretch changes a position. The stretched motion is then verified from scratch, and stretched by a little
-more where a bound that was proved is still above a limit that the samples keep.
+A stretch of time by f divides speeds by f, accelerations by f^2 and jerks by f^3. The torque at rest does not change.
+With r = 1 / f the torque is quadratic in r, and its mean square is a quartic. So each sample that is too high gives a
+largest r. No stretch changes a position. The stretched motion is verified again. If the samples keep a limit but its
+proved bound is still above it, time is stretched by a little more.
 """
 
 from __future__ import annotations
@@ -18,9 +19,9 @@ from trajectory.verification import Verification, integrals, parts_of, verify
 
 REPAIRABLE = 1.01  # the largest peak over limit that is repaired
 _ROUNDING = 1e-12
-# Steps of a further stretch: few and coarse, so that the answer does not hang on a bound's last digits.
+# Steps of a further stretch. They are few and coarse, so that the answer does not depend on a bound's last digits.
 _LITTLE, _TRIES = 1e-5, 11
-_NEEDED = 0.5  # of a bound's excess; accelerations fall by the square
+_NEEDED = 0.5  # share of a bound's excess that the time needs, as accelerations fall with the square of the stretch
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,9 +29,9 @@ class Repaired(Value):
     """A motion within its limits.
 
     Attributes:
-        motion: stretched where it had to be.
-        factor: by how much time was stretched; 1 where nothing was.
-        before, verification: what was measured before and after.
+        motion: the motion, stretched if needed.
+        factor: the factor that stretched the time; 1 without a stretch.
+        before, verification: the measurements before and after.
     """
 
     motion: TimedMotion
@@ -46,8 +47,8 @@ def repair(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float)
         robot, timed, limits, payload: as for `verify`.
 
     Raises:
-        LimitsExceeded: a peak is over `REPAIRABLE` times its limit, something else than a peak fails, or the stretched
-            motion still fails.
+        LimitsExceeded: a peak is above `REPAIRABLE` times its limit, something other than a peak fails, or the
+            stretched motion still fails.
     """
     before = verify(robot, timed, limits, payload)
     if before.ok:

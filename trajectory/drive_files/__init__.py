@@ -1,4 +1,4 @@
-"""Files that drives and controllers read, one module a format."""
+"""Files that drives and controllers read, one module for each format."""
 
 from trajectory.drive_files.drive import Drive
 from trajectory.drive_files.formats import FORMATS, Format, drive_files, format_named

@@ -1,8 +1,8 @@
-"""CiA 402 cyclic synchronous position: the target position 0x607A of each drive, one row a SYNC.
+"""CiA 402 cyclic synchronous position: the target position 0x607A of each drive, one row for each SYNC.
 
 A CSV of whole increments (INTEGER32) below commented lines: 0x60C2:01 (UNSIGNED8) times ten to the 0x60C2:02
-(INTEGER8) is the interpolation time period in seconds (CiA 402-2, IEC 61800-7-201). Zero is the model's zero: the
-drive's home offset 0x607C is the machine's affair.
+(INTEGER8) is the interpolation time period in seconds (CiA 402-2, IEC 61800-7-201). Zero is the model's zero. The
+drive's home offset 0x607C must be set on the machine.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def write(stem: str, setpoints: Setpoints, drive: Drive) -> dict[str, str | byte
     """The file's content by name.
 
     Raises:
-        InvalidValue: no increments, an overflow of 32 bits, a period that 0x60C2 cannot say, or names that do not fit.
+        InvalidValue: increments are missing, 32 bits overflow, 0x60C2 cannot express the period, or names do not fit.
     """
     names = drive.names(setpoints.joint_names)
     per_unit = drive.increments_per_unit(setpoints.joint_units)
@@ -47,7 +47,7 @@ def interpolation_time(period: float) -> tuple[int, int]:
     """0x60C2:01 and :02 for a period [s].
 
     Raises:
-        InvalidValue: no whole number up to 255 times a power of ten.
+        InvalidValue: the period is no whole number up to 255 times a power of ten.
     """
     for exponent in range(_SLOWEST, _FASTEST - 1, -1):
         value = period / 10.0**exponent
@@ -64,7 +64,7 @@ def _targets(setpoints: Setpoints, per_unit: Array, names: tuple[str, ...]) -> A
     over = (targets < _INT32.min) | (targets > _INT32.max)
     if over.any():
         row, axis = (int(k) for k in np.argwhere(over)[0])
-        expected = f"{_INT32.min} to {_INT32.max}: fewer increments, less encoder_gear, or another zero"
+        expected = f"{_INT32.min} to {_INT32.max}: fewer increments, a smaller encoder_gear, or another zero"
         raise InvalidValue(f"0x607A of {names[axis]}, set-point {row}", int(targets[row, axis]), expected)
     result: Array = targets.astype(np.int32)
     return result

@@ -1,4 +1,4 @@
-"""What a drive file must know of the drives beyond the set-points: data of the machine, not of the motion."""
+"""The data of the drives that a drive file needs besides the set-points: data of the machine, not of the motion."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ class Drive:
     """Names and encoders of the axes, in the order of the set-points' actuators.
 
     Attributes:
-        axes: (m,) names; each format's own where None.
-        increments: of the encoder: in a turn of it where the actuator counts in rad, in a metre where in m; one number
-            or one an axis. None where no format needs it.
-        encoder_gear: turns of the encoder for one of the actuator (metres for a metre); negative where it counts the
-            other way; one number or one an axis. It is 1, whatever the motor's gear, where the encoder is behind it.
+        axes: (m,) names; None takes the names of each format.
+        increments: increments of the encoder, for one turn of it (actuators in rad) or one metre (actuators in m); one
+            number, or one for each axis. None if no format needs it.
+        encoder_gear: turns of the encoder for one turn of the actuator (metres for one metre), negative if the encoder
+            counts the other way; one number, or one for each axis. It is 1 if the encoder is on the output of the gear.
 
     Raises:
-        InvalidValue: a value that no drive can have; the field is named.
+        InvalidValue: a value is impossible for a drive; the message names the field.
     """
 
     axes: tuple[str, ...] | None = None
@@ -44,29 +44,31 @@ class Drive:
             raise InvalidField("Drive", "encoder_gear", self.encoder_gear, "finite numbers other than 0")
 
     def names(self, own: tuple[str, ...]) -> tuple[str, ...]:
-        """(m,) the axes' names; `own` are the format's.
+        """(m,) the axes' names; `own` are the format's names.
 
         Raises:
-            InvalidValue: another number of names than axes.
+            InvalidValue: there are not as many names as axes.
         """
         if self.axes is None:
             return own
         if len(self.axes) != len(own):
-            raise InvalidField("Drive", "axes", self.axes, f"{len(own)} names, one an actuator")
+            raise InvalidField("Drive", "axes", self.axes, f"{len(own)} names, one for each actuator")
         return self.axes
 
     def increments_per_unit(self, joint_units: tuple[str, ...]) -> Array:
         """(m,) encoder increments for a radian or a metre of each actuator; negative where it turns the other way.
 
         Raises:
-            InvalidValue: increments are not given, or for another number of axes.
+            InvalidValue: increments are not given, or their number is not that of the axes.
         """
         if self.increments is None:
-            raise InvalidField("Drive", "increments", None, "the encoder's, in a turn of it (in a metre on a rail)")
+            raise InvalidField(
+                "Drive", "increments", None, "the increments of the encoder in one turn (in one metre on a rail)"
+            )
         count = len(joint_units)
         for name, value in (("increments", self.increments), ("encoder_gear", self.encoder_gear)):
             if len(_several(value)) not in (1, count):
-                raise InvalidField("Drive", name, value, f"one number or {count}, one an actuator")
+                raise InvalidField("Drive", name, value, f"one number, or {count}: one for each actuator")
         turns = np.array([2 * math.pi if unit == "rad" else 1.0 for unit in joint_units])
         result: Array = np.asarray(self.increments) * np.asarray(self.encoder_gear) / turns
         return result

@@ -51,7 +51,7 @@ def write(stem: str, setpoints: Setpoints, drive: Drive) -> dict[str, str | byte
     """The files' content by name.
 
     Raises:
-        InvalidValue: a period that is no whole number of nanoseconds, or names that do not fit.
+        InvalidValue: the period is no whole number of nanoseconds, or names do not fit.
     """
     message = _message(setpoints, drive)
     lines = [*header_lines(setpoints.header, "#"), f"header: {json.dumps(message['header'])}"]
@@ -91,6 +91,6 @@ def _flow(value: object) -> str:
 
 
 def _number(value: float) -> str:
-    """All digits; YAML 1.1 takes 1e-05 for a word, as it has no point."""
+    """A number with all digits. Without a point, YAML 1.1 would read 1e-05 as a word."""
     text = repr(value)
     return text if "." in text else text.replace("e", ".0e")

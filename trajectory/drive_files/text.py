@@ -1,4 +1,4 @@
-"""What the text formats share: comments that say what made a file, and numbers in degrees and millimetres."""
+"""Functions for all text formats: comments that state how a file was made, numbers in degrees and millimetres."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ DECIMALS = 9  # of a degree or a millimetre: 2e-11 rad, 1e-12 m
 
 
 def header_lines(header: Mapping[str, Any], mark: str) -> list[str]:
-    """`name: JSON value` of each entry, behind the format's comment mark.
+    """`name: JSON value` of each entry, after the format's comment mark.
 
     Raises:
         ValueError: the header holds a number that is not finite.
@@ -25,7 +25,7 @@ def header_lines(header: Mapping[str, Any], mark: str) -> list[str]:
 
 
 def unit_names(setpoints: Setpoints) -> list[str]:
-    """(m,) deg or mm."""
+    """(m,) the unit of each actuator in the file: deg or mm."""
     return ["deg" if unit == "rad" else "mm" for unit in setpoints.joint_units]
 
 
@@ -36,6 +36,6 @@ def in_degrees_or_mm(setpoints: Setpoints) -> tuple[Array, Array]:
 
 
 def decimal(value: float) -> str:
-    """With a point and no exponent, which not every controller reads; no more digits than it needs."""
+    """A number with a point and no exponent (some controllers read none), and no more digits than needed."""
     text = f"{value:.{DECIMALS}f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text

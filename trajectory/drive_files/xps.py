@@ -1,7 +1,7 @@
 """Newport XPS `.trj` for PVT execution of a MultipleAxes group (XPS-Q8 user's manual, "PVT trajectories").
 
-A line an element: its duration [s], then displacement and end velocity of each positioner, in degrees or millimetres.
-No header and no comments. The group must stand at the first set-point.
+Each line is one element: its duration [s], then displacement and end velocity of each positioner, in degrees or
+millimetres. There is no header and there are no comments. The group must be at the first set-point at the start.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from trajectory.drive_files.drive import Drive
 from trajectory.drive_files.text import DECIMALS, decimal, in_degrees_or_mm
 from trajectory.setpoints import Setpoints
 
-MOST_AXES = 8  # of a MultipleAxes group
+MOST_AXES = 8  # most axes of a MultipleAxes group
 
 
 def write(stem: str, setpoints: Setpoints, drive: Drive) -> dict[str, str | bytes]:  # noqa: ARG001
@@ -26,7 +26,7 @@ def write(stem: str, setpoints: Setpoints, drive: Drive) -> dict[str, str | byte
     if count > MOST_AXES:
         raise InvalidValue("axes of an XPS trajectory", count, f"at most {MOST_AXES}")
     position, speed = in_degrees_or_mm(setpoints)
-    # differences of rounded positions: their sum does not drift, as rounded differences would
+    # Take differences of rounded positions: the sum of rounded differences would drift.
     displacement = np.round(np.diff(position, axis=0), DECIMALS)
     period = np.format_float_positional(setpoints.header["period [s]"], trim="-")
     lines = [

@@ -1,6 +1,6 @@
 """Position-velocity-time CSV in the layout of Zaber's PVT editor.
 
-The first row, at time 0, is where the axes must already stand; each further row's time is relative to the row before.
+The axes must already be at the first row, at time 0. The time of each later row is relative to the row before.
 The layout has no comments. Between rows the controller interpolates by cubics.
 """
 
@@ -19,7 +19,7 @@ def write(stem: str, setpoints: Setpoints, drive: Drive) -> dict[str, str | byte
     """The file's content by name.
 
     Raises:
-        InvalidValue: names that do not fit.
+        InvalidValue: names do not fit.
     """
     names = drive.names(tuple(f"Axis {k + 1}" for k in range(len(setpoints.joint_names))))
     columns = ["Time (s)"]

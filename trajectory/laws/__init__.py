@@ -1,4 +1,4 @@
-"""Timing laws, one room each, and their registry."""
+"""Timing laws, one room for each, and their registry."""
 
 from trajectory.laws.registry import LAWS, Law, TimingLaw, law_named
 

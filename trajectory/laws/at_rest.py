@@ -1,4 +1,4 @@
-"""What a path asks for however it is travelled: the joints' positions, and the torque of the weight where it rests."""
+"""What a path needs at any speed: the joints' positions, and the torque of the weight where it rests."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ _ROUNDING = 1e-9  # relative
 def require_possible(robot: Mechanism, path: Path, limits: Limits, payload: float, s: Array) -> None:
     """Check the joints' position along a path, and the torque of the weight at both of its ends, where it rests.
 
-    In between a motion may pass where the drives could not hold it.
+    Between the ends, a motion at speed may pass places where the drives could not hold the weight.
 
     Args:
-        robot: that reaches every pose of the path.
-        path: of its poses.
-        limits: of which the ranges are looked at, and those that leave the drives less torque than they need at rest.
+        robot: a robot that reaches every pose of the path.
+        path: a path of its poses.
+        limits: the limits; joint ranges and the torque that they leave at rest are checked.
         payload: mass at the tool [kg].
-        s: (k,) arc lengths where the position is looked at [m].
+        s: (k,) arc lengths where the position is checked [m].
 
     Raises:
-        PathBeyondLimit: a joint is beyond its range, or needs more torque at rest than it has.
+        PathBeyondLimit: a joint is outside its range, or needs more torque at rest than it has.
     """
     count = len(robot.joint_names)
     if (ranges := limits.ranges(count)) is not None:
@@ -54,7 +54,7 @@ def require_held(robot: Mechanism, path: Path, limits: Limits, payload: float, s
 
 
 def _require(robot: Mechanism, path: Path, limit: Limit, s: Array, values: Array, ranges: tuple[Array, Array]) -> None:
-    """Raise for the value that is furthest beyond its range, over the range's width."""
+    """Raise for the value that is furthest outside its range, relative to the range's width."""
     low, high = ranges
     beyond = np.maximum(low - values, values - high) / (high - low)
     k, joint = np.unravel_index(int(beyond.argmax()), beyond.shape)

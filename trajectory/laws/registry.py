@@ -1,4 +1,4 @@
-"""The timing laws by name: what a study's `law` and the command line's `--law` choose from; loaded at first use."""
+"""The timing laws by name, for a study's `law` and the command line's `--law`. They are loaded at first use."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ class Law:
     """A timing law.
 
     Attributes:
-        name: in a study, and of the motions that it makes.
-        title: what it does, for people.
+        name: the law's name in a study and in the motions that it makes.
+        title: a description for people.
         function: "module:function", a `TimingLaw` that may take more arguments.
-        takes: those of "intervals" and "within" that it takes, too.
-        needs: limits that must be set, and what is expected of each.
+        takes: which of the arguments "intervals" and "within" it takes.
+        needs: limits that must be set, and the words of the error without them.
         refuses: kinds of limits that it cannot keep, and why.
-        leaves_out: fields of the limits that it refuses, but without which a cycle is timed; the cycle names them.
+        leaves_out: fields of limits that it cannot keep, but that a cycle may have. The cycle names them as not kept.
     """
 
     name: str
@@ -42,8 +42,8 @@ class Law:
         """The law as a function; this loads its solver.
 
         Args:
-            intervals: of the path, to start from.
-            within: where every pose must stay.
+            intervals: number of intervals of the path at the start.
+            within: bounds of every pose.
         """
         module, _, function = self.function.partition(":")
         given: dict[str, Any] = {"intervals": intervals, "within": within}
@@ -53,7 +53,7 @@ class Law:
         """Check that the law can keep the limits.
 
         Raises:
-            InvalidField: naming one that it needs, or refuses.
+            InvalidField: a limit that the law needs is not set, or one that it refuses is set.
         """
         use = f"for the {self.name} law"
         for limit, expected in self.needs.items():
@@ -68,28 +68,28 @@ class Law:
 _ALL = (
     Law(
         "jerk",
-        "the fastest on the path that keeps all limits, jerk among them",
+        "the fastest law on the path that keeps all limits, with the jerk limit",
         "trajectory.laws.jerk:jerk_limited",
-        needs={JOINT_JERK: "a limit; without one the toppra law is the fastest"},
+        needs={JOINT_JERK: "a jerk limit; without one use the law toppra"},
     ),
     Law(
         "toppra",
-        "the fastest on the path without a limit of jerk",
+        "the fastest law on the path without a jerk limit",
         "trajectory.laws.toppra:time_optimal",
         takes=("intervals",),
         refuses={
-            Third: "its s'' is bang-bang",
-            Sloped: "a limit that falls with the speed is not linear in u and x",
-            Squared: "it is a limit of the whole way, not of an instant",
+            Third: "its acceleration steps from one extreme to the other",
+            Sloped: "its equations cannot hold a torque limit that falls with the speed",
+            Squared: "it limits the whole way, not each instant",
         },
-        leaves_out=("jerk",),  # it makes a motion smooth; what else the law cannot keep rates the drives
+        leaves_out=("jerk",),  # without a jerk limit a motion is only less smooth; the other limits protect the drives
     ),
     Law(
         "free",
-        "path and timing together, all limits kept, jerk among them",
+        "finds path and timing together and keeps all limits, with the jerk limit",
         "trajectory.laws.free:free_motion",
         takes=("within",),
-        needs={JOINT_JERK: "a limit: it keeps the jerk"},
+        needs={JOINT_JERK: "a jerk limit, which this law always keeps"},
     ),
 )
 LAWS = {law.name: law for law in _ALL}
@@ -99,7 +99,7 @@ def law_named(name: str) -> Law:
     """One of `LAWS`.
 
     Raises:
-        InvalidValue: there is none of this name; all are listed.
+        InvalidValue: there is no law of this name; the message lists all.
     """
     if name not in LAWS:
         known = ", ".join(f"{law.name} ({law.title})" for law in LAWS.values())

@@ -1,4 +1,4 @@
-"""Limits, one file a kind: its words, what a motion uses of it, and what it asks of a law."""
+"""Limits, one file for each kind: its words, how much of it a motion uses, and its constraints on a law."""
 
 from trajectory.limits.jerk import JOINT_JERK
 from trajectory.limits.joint_ranges import JOINT_RANGES

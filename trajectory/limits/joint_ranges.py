@@ -11,13 +11,13 @@ from trajectory.motions import Motion
 
 
 class JointRanges(InstantLimit):
-    """low <= q <= high; the way alone decides whether it is kept."""
+    """low <= q <= high. Only the way decides whether it is kept, not the pace."""
 
     name = "joint position"
     fields = (
         RangeField(
             "position",
-            "The ranges of the joints. The path alone decides whether they are kept.",
+            "The ranges of the joints. Only the path decides whether they are kept.",
             "low < high, or one such pair a joint (rad, or m)",
             "rad or m",
         ),

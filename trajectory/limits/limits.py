@@ -1,4 +1,4 @@
-"""What the drives and the tool may do: the record of all limits, and the list of their kinds."""
+"""The record of all limits of the drives and the tool, and the list of their kinds."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ LIMITS: tuple[Limit, ...] = (
     SPEED_TORQUE_LINE,
     RMS_TORQUE,
 )
-"""Every limit that there is, in the order of tables."""
+"""Every limit, in the order of tables."""
 
 
 @dataclass(frozen=True)
 class Limits(LimitValues):
-    """Limits, each but the position the same in both directions; None is no limit. A joint limit is one number (one
-    range) or one a joint; where drives couple the joints, as the Peppermill's do, it holds at the actuators. What each
-    field means, its limit in `LIMITS` says.
+    """Limits of drives and tool; None is no limit. All but the position are the same in both directions. A joint limit
+    is one number (or range) for all joints, or one for each joint. If drives couple the joints, as in the Peppermill,
+    it holds at the actuators. The limits in `LIMITS` say what each field means.
 
     Attributes:
         speed: [rad/s or m/s].
@@ -54,7 +54,7 @@ class Limits(LimitValues):
         rms_torque: [N m or N].
 
     Raises:
-        InvalidValue: a limit that is not finite and positive, a range that does not rise, or half of a line.
+        InvalidValue: a limit is not finite and positive, a range does not rise, or only one end of the line is given.
     """
 
     speed: PerJoint
@@ -78,47 +78,48 @@ class Limits(LimitValues):
                     raise InvalidField("Limits", field.name, None, limit.both)
 
     def __iter__(self) -> Iterator[Limit]:
-        """Those that are set."""
+        """The limits that are set."""
         return (limit for limit in LIMITS if limit.is_set(self))
 
     def has(self, *kinds: type[Constraint]) -> bool:
-        """Whether a limit is set that is a constraint of one of these kinds."""
+        """Whether a limit with a constraint of one of these kinds is set."""
         return any(issubclass(limit.kind, kinds) for limit in self)
 
     def without(self, *kinds: type[Constraint]) -> Limits:
-        """These, but for those that are constraints of these kinds."""
+        """These limits without those that have a constraint of one of these kinds."""
         return self.less(*(limit for limit in self if issubclass(limit.kind, kinds)))
 
     def less(self, *others: Limit) -> Limits:
-        """These without some."""
+        """These limits without some."""
         nothing: dict[str, Any] = {field.name: None for limit in others for field in limit.fields}
         return replace(self, **nothing)
 
     def constraints(self, kind: type[Kind], along: Along) -> list[Kind]:
-        """What the limits of a kind ask of a pace on a way."""
+        """The constraints of one kind on the pace along a way."""
         found = [limit.constraint(along, self) for limit in self if issubclass(limit.kind, kind)]
         return [constraint for constraint in found if isinstance(constraint, kind)]
 
     def as_dict(self) -> dict[str, object]:
-        """The limits that are set; a list for one a joint."""
+        """The limits that are set; a list if there is one for each joint."""
         return {k: _lists(v) for k, v in asdict(self).items() if v is not None}
 
 
 def uses(robot: Mechanism, motion: Motion, limits: Limits, slack: Motion = NO_SLACK) -> dict[InstantLimit, Use]:
-    """What a motion uses of each limit that holds at every instant; those that are not set tell the quantity.
+    """How much a motion uses of each limit that holds at every instant. A limit that is not set gives only the
+    quantity.
 
     Args:
-        robot: of the motion.
+        robot: the robot that moves.
         motion: (..., m) samples.
-        limits: of joints and tool.
-        slack: how far each sample may be from what it is; the most that it may use is then found.
+        limits: limits of joints and tool.
+        slack: bounds of the error of each sample; the result is then the largest possible use.
     """
     found = {limit: limit.use(robot, motion, limits, slack) for limit in LIMITS if isinstance(limit, InstantLimit)}
     return {limit: use for limit, use in found.items() if use is not None}
 
 
 def mean_squares() -> tuple[MeanSquareLimit, ...]:
-    """Every limit of a root mean square."""
+    """Every limit on a root mean square."""
     return tuple(limit for limit in LIMITS if isinstance(limit, MeanSquareLimit))
 
 

@@ -1,4 +1,4 @@
-"""Root mean square of the torque: what a drive may bear in the long run."""
+"""Root mean square of the torque: the torque that a drive can give for a long time without overheating."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from trajectory.motions import ByRate, Motion
 
 
 class RmsTorque(MeanSquareLimit):
-    """Over each way from rest to rest, so over the whole cycle too."""
+    """The RMS torque over each way from rest to rest, and so over the whole cycle."""
 
     name = "rms torque"
     fields = (

@@ -35,8 +35,8 @@ class SpeedTorqueLine(InstantLimit):
         ),
         JointField(
             "no_load_speed",
-            "The speed without torque, the other end of the same line.",
-            "a speed > 0, or one a joint, if and only if there is a stall_torque",
+            "The speed at which no torque is left. Give it together with stall_torque.",
+            "a speed > 0, or one a joint; only together with stall_torque",
             SPEED_UNIT,
         ),
     )

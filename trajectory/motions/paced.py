@@ -1,4 +1,4 @@
-"""A timed motion travelled at another pace: its own time tau becomes a function of the time t."""
+"""A timed motion at another pace: the motion's own time tau is a function of the time t."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ class PacedMotion(Value):
         tau, knots, same = self.pace.position, self.motion.times, SAME * self.motion.duration
         if tau[0] < -same or tau[-1] > self.motion.duration + same or (np.diff(tau) < 0.0).any():
             found = f"knots from {tau[0]:.9g} to {tau[-1]:.9g} s of the motion's time"
-            raise InvalidValue("pace of a motion", found, f"rising ones in [0, {self.motion.duration:.9g}] s")
+            raise InvalidValue("pace of a motion", found, f"rising knots in [0, {self.motion.duration:.9g}] s")
         passed = knots[(knots > tau[0] + same) & (knots < tau[-1] - same)]
         after = np.searchsorted(tau, passed)
         hidden = passed[np.minimum(tau[after] - passed, passed - tau[after - 1]) > same]
         if hidden.size:
-            found = f"none of its knots at {hidden[0]:.12g} s of the motion's time"
-            raise InvalidValue("pace of a motion", found, "one at each knot of the motion that it passes")
+            found = f"no knot at {hidden[0]:.12g} s of the motion's time"
+            raise InvalidValue("pace of a motion", found, "a knot at each knot of the motion that it passes")
 
     @property
     def name(self) -> str:

@@ -12,7 +12,7 @@ from trajectory.paths import PathBox, located, throughout
 
 _ROUNDING = 1e-9  # of the largest value, or of an interval
 _SLACK = (
-    1e-12  # relative, to a value and to the largest one: far more than what evaluation in double arithmetic is off by
+    1e-12  # relative, to a value and to the largest one: far more than the error of evaluation in double arithmetic
 )
 
 

@@ -1,4 +1,4 @@
-"""A time law: how a path is travelled in time, exactly, whatever method found it."""
+"""A time law: the exact motion along a path in time. Any method may find it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class TimeLaw(Value):
     """Arc length as a piecewise quartic of time: s''' is linear in each interval.
 
     Attributes:
-        name: of the method that found it.
+        name: the name of the method that found it.
         times: (n + 1,) knots, the first at 0 [s].
         position: (n + 1,) s at the knots [m].
         speed: (n + 1,) s' at the knots, never negative [m/s].
@@ -41,7 +41,7 @@ class TimeLaw(Value):
         snap: (n,) s'''' of each interval [m/s^4].
 
     Raises:
-        InvalidShape, InvalidValue: arrays that do not fit together, are not finite or do not join at the knots.
+        InvalidShape, InvalidValue: arrays do not fit together, are not finite, or intervals do not join at the knots.
     """
 
     name: str
@@ -65,9 +65,7 @@ class TimeLaw(Value):
         if self.times.size < 2 or self.times[0] != 0.0 or not (np.diff(self.times) > 0).all():
             raise InvalidField("TimeLaw", "times", "knots that do not increase from 0", "increasing from 0 s")
         if (self.speed < 0).any():
-            raise InvalidField(
-                "TimeLaw", "speed", float(self.speed.min()), "at least 0 m/s: a path is not travelled back"
-            )
+            raise InvalidField("TimeLaw", "speed", float(self.speed.min()), "at least 0 m/s, as a law never goes back")
         self._require_joined()
 
     @classmethod

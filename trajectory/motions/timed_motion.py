@@ -1,4 +1,4 @@
-"""Timed motions: the pose as an exact function of time, whatever method found it."""
+"""Timed motions: the pose as an exact function of time. Any method may find it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class TimedMotion(Protocol):
 
     @property
     def name(self) -> str:
-        """Of the method that found it."""
+        """The name of the method that found it."""
 
     @property
     def times(self) -> Array:
@@ -58,7 +58,7 @@ class TimedMotion(Protocol):
         """The motion in intervals (...,), from 0, so long (...,) after each one's start [s]: one-sided limits too."""
 
     def stretched(self, factor: float) -> Self:
-        """The same way travelled `factor` times as long.
+        """The same motion, `factor` times as slow.
 
         Raises:
             InvalidValue: the factor is not finite and positive.
@@ -69,7 +69,7 @@ class TimedMotion(Protocol):
 
     @property
     def kink(self) -> float:
-        """How far the way itself is from having a continuous second derivative; 0 is smooth."""
+        """The largest relative jump of the way or of its first derivatives; 0 is smooth."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,8 @@
-"""Torque along a path, split by how it depends on the path's speed and acceleration: nothing here is symbolic.
+"""Torque along a path, split by how it depends on the path's speed and acceleration, by numbers only.
 
-The equations of motion are quadratic in the rates, and friction adds a constant and a linear part while no joint turns
-back. So travelling the same way r times as fast, r > 0, takes the torque constant + linear r + quadratic r^2, and three
-speeds tell the three parts exactly.
+The equations of motion are quadratic in the rates. Friction adds a constant and a linear part, as long as no joint
+turns back. So the same motion r times as fast, r > 0, needs the torque constant + linear r + quadratic r^2. Three
+speeds give the three parts exactly.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Jerk-limited moves from pose to pose, and from motion to rest: to set up, to approach, to stop off the path.
+"""Jerk-limited moves from pose to pose, and stops that leave the path.
 
-A move goes on a straight line of the joints where these can move freely of each other and the line keeps to the joints'
-ranges without a singularity; otherwise on a straight line of the pose. The pose is followed from where the move starts,
-never found anew, so that it stays in its assembly mode.
+A move is a straight line in the joints if the joints can move independently, and if this line stays in the joints'
+ranges and passes no singularity. Otherwise it is a straight line of the pose. The pose is followed from the start of
+the move, so that it stays in its assembly mode.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ class Move:
     """A move that was checked.
 
     Attributes:
-        setpoints: one a period; the last one is at rest, and holds.
+        setpoints: one for each period; the last one is at rest.
         duration: a whole number of periods [s].
-        peak_over_limit: of the joints' speed, acceleration and jerk, and of what else is limited.
+        peak_over_limit: for the joints' speed, acceleration and jerk, and for the other limits.
     """
 
     setpoints: Setpoints
@@ -60,9 +60,9 @@ def plan_move(
 
     Raises:
         InvalidValue: no acceleration or jerk limit, a tool limit, or an impossible period.
-        UnreachablePose: start or target.
-        MoveRefused: a pose on the way leaves a range, is singular or out of reach.
-        TimingFailed: the planner reports anything but success.
+        UnreachablePose: the start or the target is out of reach.
+        MoveRefused: a pose on the way is outside a range, singular or out of reach.
+        TimingFailed: the planner does not report success.
         LimitsExceeded: a limit is broken on the way.
     """
     _require_usable(limits, period)
@@ -94,7 +94,7 @@ def plan_stop(
     joint_units: tuple[str, ...],
     near: Array | None = None,
 ) -> Move:
-    """The fastest jerk-limited stop of the joints, wherever that is; it leaves the path (`emergency_stop` does not).
+    """The fastest jerk-limited stop of the joints, at any place. It leaves the path; `emergency_stop` does not.
 
     Args:
         robot, limits, payload, period, joint_units: as for `plan_move`; as many joints as freedoms.
@@ -102,12 +102,12 @@ def plan_stop(
         near: (n,) a pose about where the stop starts; home by default.
 
     Raises:
-        As `plan_move`; InvalidValue for a redundant robot too, and TimingFailed where the state itself is beyond a
-        limit, or no rest can be reached.
+        As `plan_move`. Also InvalidValue for a redundant robot, and TimingFailed if the state itself is beyond a limit
+        or the joints cannot come to rest.
     """
     _require_usable(limits, period)
     if len(robot.joint_names) != len(robot.pose_names):
-        expected = f"{len(robot.pose_names)}, as many as freedoms: redundant joints cannot move freely of each other"
+        expected = f"{len(robot.pose_names)}, as many as freedoms, as redundant joints cannot move independently"
         raise InvalidValue(
             f"joints of {type(robot).__name__} for a stop of the joints", len(robot.joint_names), expected
         )

@@ -1,4 +1,4 @@
-"""Moves of the joints: the pose is followed from where the move starts, so that it stays in its assembly mode."""
+"""Moves of the joints. The pose is followed from the start of the move, so that it stays in its assembly mode."""
 
 from __future__ import annotations
 
@@ -25,7 +25,9 @@ def of_joints(robot: Mechanism, profile: Profile, near: Array, payload: float) -
     if missing.any():
         k = int(np.argmax(missing))
         raise MoveRefused(
-            "no pose without passing a singularity", float(profile.times[k]), pose[max(k - 1, 0)].tolist()
+            "no pose that the robot reaches without passing a singularity",
+            float(profile.times[k]),
+            pose[max(k - 1, 0)].tolist(),
         )
     unit = np.array([1.0 if name == "rad" else robot.geometry.size for name in robot.joint_units])
     away = ~((np.abs(robot.inverse(pose) - own) / unit).max(axis=-1) <= _SAME_JOINTS)
@@ -66,4 +68,4 @@ def require_at(robot: Mechanism, way: Way, target: Array) -> None:
     """
     end = way.motion.tool.pose[-1]
     if not float(robot.apart(end, target)) <= _SAME_JOINTS:
-        raise MoveRefused("another assembly mode than the target's", float(way.times[-1]), end.tolist())
+        raise MoveRefused("an end in another assembly mode than the target", float(way.times[-1]), end.tolist())

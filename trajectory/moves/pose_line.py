@@ -1,4 +1,4 @@
-"""Moves on a straight line of the pose: planned along it, and slowed down until they fit."""
+"""Moves on a straight line of the pose. They are planned along it, and slowed down until they keep the limits."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def of_pose(
 
     Raises:
         MoveRefused: the line leaves a range or the reach, or passes a singularity.
-        LimitsExceeded: it does not fit however slow.
+        LimitsExceeded: even a slow move breaks a limit.
     """
     along, count = ends[1] - ends[0], len(robot.joint_names)
     grid = ends[0] + np.linspace(0.0, 1.0, _GRID)[:, None] * along

@@ -102,7 +102,7 @@ def _profile(given: InputParameter, period: float, parts: int, asked: Mapping[st
     if result not in (Result.Working, Result.Finished):
         raise TimingFailed("ruckig", asked, f"no solution ({Result(result).name})")
     if plan.duration * parts > (most := _MOST_SAMPLES * period):
-        raise TimingFailed("ruckig", asked, f"it takes {plan.duration:.4g} s, more than {most / parts:g} s")
+        raise TimingFailed("ruckig", asked, f"the move takes {plan.duration:.4g} s, more than {most / parts:g} s")
     count = max(1, round(plan.duration / period))  # a period at rest where the target is the start
     if plan.duration > 0.0 and abs(count * period - plan.duration) > _ROUNDING * period:
         raise TimingFailed("ruckig", asked, f"{plan.duration} s is no whole number of periods")

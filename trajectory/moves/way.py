@@ -1,4 +1,4 @@
-"""A move at every part of a period, and what is checked of every move."""
+"""A move, sampled several times in each period, and the checks of every move."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def require_in_ranges(robot: Mechanism, way: Way, limits: Limits) -> None:
             values = robot.margin(name, way.motion.tool.pose)
             worst = int(np.nanargmin(np.where(np.isnan(values), -np.inf, values)))
             if not values[worst] >= -ROUNDING * robot.geometry.size:
-                found = f"{name} of {values[worst]:.4g}, less than 0"
+                found = f"a margin {name} of {values[worst]:.4g}, below 0"
                 raise MoveRefused(found, float(way.times[worst]), way.motion.tool.pose[worst].tolist())
     position, ranges = way.motion.joints.position, limits.ranges(len(robot.joint_names))
     if ranges is None:
@@ -85,7 +85,7 @@ def axis_limits(limits: Limits, count: int) -> AxisLimits:
     def needed(name: str) -> list[float]:
         limit = limits.of_joints(name, count)
         if limit is None:
-            raise InvalidField("Limits", name, None, "a limit: a jerk-limited move needs it", "for a move")
+            raise InvalidField("Limits", name, None, "a limit, as a jerk-limited move needs it", "for a move")
         return [float(v) for v in limit]
 
     return AxisLimits(needed("speed"), needed("acceleration"), needed("jerk"))

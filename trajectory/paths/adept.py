@@ -1,4 +1,4 @@
-"""The Adept cycle: up, across and down, with rounded corners, and the tool turning all the way."""
+"""The Adept cycle: up, across and down, with rounded corners. The tool turns all the way."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ STANDARD_SIZES: dict[str, tuple[float, float, float]] = {
     "25/300/25": (0.025, 0.300, 0.025),
     "25/700/25": (0.025, 0.700, 0.025),
 }
-"""Millimetres up, across and down, as the field writes them -> lift, span and place lift [m]."""
+"""The usual names, in millimetres up, across and down, and their lift, span and place lift [m]."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class AdeptCycle:
     Attributes:
         lift: height of the vertical leg above the pick [m].
         span: horizontal distance to the place [m].
-        blend: what a corner takes off each of its legs [m].
+        blend: length that a corner takes off each of its legs [m].
         turn: change of theta, or yaw, from pick to place [rad].
         pick: (3,) where the cycle starts [m].
         heading: direction of the span in the xy plane, from x [rad].
@@ -39,7 +39,7 @@ class AdeptCycle:
         pose_names: x, y, z and the robot's angles.
 
     Raises:
-        InvalidValue: a field that is not finite, corners that do not fit, or a turn or tilt that the pose has not.
+        InvalidValue: a field is not finite, corners do not fit, or the pose has no angle for a turn or tilt.
     """
 
     lift: float = 0.025
@@ -76,7 +76,7 @@ class AdeptCycle:
         angles = set(self.pose_names[3:])
         for name, missing in (("turn", not angles & {"theta", "yaw"}), ("tilt", not {"roll", "pitch"} <= angles)):
             if missing and np.any(getattr(self, name)):
-                what = f"0: the pose is {', '.join(self.pose_names)}"
+                what = f"0, as the pose is {', '.join(self.pose_names)}"
                 raise InvalidField("AdeptCycle", name, getattr(self, name), what)
 
     def _require_corners(self) -> None:
@@ -99,7 +99,7 @@ class AdeptCycle:
             others: further fields of the cycle.
 
         Raises:
-            InvalidValue: another size.
+            InvalidValue: there is no such size.
         """
         if size not in STANDARD_SIZES:
             raise InvalidValue("size of the Adept cycle", size, f"one of {', '.join(STANDARD_SIZES)}")
@@ -170,7 +170,7 @@ class AdeptCycle:
         return self.rounded.stops
 
     def waypoint(self, s: float) -> int | None:  # noqa: ARG002
-        """None: it is named by its pick and its place."""
+        """None, as an Adept cycle has no waypoints."""
         return None
 
     def as_dict(self) -> dict[str, object]:

@@ -1,7 +1,7 @@
-"""How an angle of a path changes along it: monotonically from each value that is given to the next one.
+"""How an angle changes along a path: monotonically from each given value to the next one.
 
 It follows the septic smoothstep of the arc length, so that its first three derivatives are 0 where a value is given.
-Where the tool turns in place the angle alone is the way, and changes evenly.
+Where the tool turns in place, only the angle changes, and it changes evenly.
 """
 
 from __future__ import annotations

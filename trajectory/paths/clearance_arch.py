@@ -1,9 +1,9 @@
-"""The clearance arch of a pick-and-place cycle: what the tool has to stay above when its path is free.
+"""The clearance arch of a pick-and-place cycle: the tool must stay outside it when its path is free.
 
-The arch stands between the verticals at pick and place, below the line from one lift to the other, with each corner
-rounded by a superellipse. With a and b the distances from the two sides of a corner, over the blend, counted from the
-inner end of the corner outward, the tool is outside where max(a, 0)^k + max(b, 0)^k >= 1. It must not go below the
-height of the nearer end either.
+The arch is between the verticals at pick and place, below the line from one lift to the other. Each corner is rounded
+by a superellipse. Let a and b be the distances from the two sides of a corner, over the blend, counted outward from the
+inner end of the corner. The tool is outside where max(a, 0)^k + max(b, 0)^k >= 1. It must also stay above the height of
+the nearer end.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from trajectory.paths.adept import AdeptCycle
 from trajectory.paths.path import Path, Reversed
 
 EXPONENT = 3.0
-TOLERANCE = 4e-4  # of the blend: a cycle starts on the arch's very side
+TOLERANCE = 4e-4  # times the blend, as a cycle starts exactly on the side of the arch
 
 
 @dataclass(frozen=True)
@@ -40,11 +40,11 @@ class Arch:
         """The arch of a cycle or of its way back.
 
         Raises:
-            UnsuitedPath: any other path: nothing says where the tool may go beside it.
+            UnsuitedPath: the path is of another kind, and so has no arch.
         """
         cycle = path.path if isinstance(path, Reversed) else path
         if not isinstance(cycle, AdeptCycle):
-            raise UnsuitedPath("free", "another one", "an Adept cycle: its arch says where the tool may go")
+            raise UnsuitedPath("free", "another path", "an Adept cycle, as its arch decides where the tool may go")
         return cls(cycle)
 
     def sides(self, x: ca.SX, y: ca.SX, z: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:

@@ -1,12 +1,12 @@
 """The legs and corners of a path through points.
 
-A point is no corner where the path goes straight on: waypoints in a row without a blend are one leg where each step
-between them is within `STRAIGHT` of the leg's own direction. Such a leg misses a waypoint by no more than that share of
-its steps. Any other waypoint without a blend is a stop. So is one whose corner would be no longer than `UNTOLD` of the
-path: arc lengths are rounded too much to tell what it does inside.
+A point is no corner if the path goes straight on there. Waypoints in a row without a blend are one leg if each step
+between them is within `STRAIGHT` of the leg's own direction. Such a leg misses a waypoint by at most that share of its
+steps. Any other waypoint without a blend is a stop. A waypoint whose corner would be shorter than `UNTOLD` of the path
+is a stop too, because the rounding of arc lengths would be too large inside it.
 
-Where the tool point stands still from one waypoint to the next, the tool turns in place, from stop to stop. Such a leg
-is as long as the angle by which it turns times the path's longest leg; where the path has no other leg, 1 m a radian.
+If two waypoints in a row have the same place, the tool turns in place, from stop to stop. The length of such a leg is
+its angle times the path's longest leg, or 1 m for each radian if the path has no other leg.
 """
 
 from __future__ import annotations
@@ -111,7 +111,9 @@ def _told_blends(points: Array, blends: Sequence[float], in_place: Array) -> lis
             before, after = points[corner] - points[start], points[stop] - points[corner]
             alpha, _ = _turn(before / np.linalg.norm(before), after / np.linalg.norm(after))
             if alpha > math.pi - STRAIGHT:
-                raise InvalidPath(corner + 1, "blend", told[corner], "0 m: where a path reverses it has to stop")
+                raise InvalidPath(
+                    corner + 1, "blend", told[corner], "0 m, as the tool must stop where the path reverses"
+                )
             if corner_length(alpha, told[corner]) <= least:
                 told[corner] = 0.0
     return told
@@ -152,11 +154,11 @@ def _require_room(points: Array, sizes: Array, in_place: Array, blends: Sequence
         at = k if blends[k - 1] > blends[k] else k + 1
         if in_place[k - 1]:
             if not turns[k - 1] > _SAME:
-                expected = f"another one than that of pose {k}, or an angle that changes"
+                expected = f"a place other than that of pose {k}, or another angle"
                 raise InvalidPath(k + 1, "place", points[k].tolist(), expected)
             if both > 0.0:
-                expected = f"0 m: from pose {k} to pose {k + 1} the tool turns in place"
+                expected = f"0 m, as the tool turns in place from pose {k} to pose {k + 1}"
                 raise InvalidPath(at, "blend", blends[at - 1], expected)
         elif both > size * (1.0 + _ROUNDING):
-            expected = f"with its neighbour's at most the {size:.9g} m from pose {k} to pose {k + 1}, not {both:.9g} m"
+            expected = f"blends whose sum is at most the {size:.9g} m from pose {k} to pose {k + 1}, not {both:.9g} m"
             raise InvalidPath(at, "blend", blends[at - 1], expected)

@@ -1,4 +1,4 @@
-"""Paths of the pose by arc length, and what a path must be before it is timed."""
+"""Paths of the pose by arc length, and the checks of a path before it is timed."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """A path through points: straight legs, G3 corners of chosen blend, angles that follow the arc length.
 
-The corners cut the points inside: the nearest pose of the path is the middle of the corner. Between the points that
-give an angle it changes monotonically by the septic smoothstep of the arc length, so that it has exactly the value
-given at a point (in the middle of its corner) and never leaves the range of the values given.
+A corner passes inside its point; its middle is nearest to the point. Between the points that give an angle, the angle
+changes monotonically by the septic smoothstep of the arc length. So it has exactly the given value at a point (in the
+middle of its corner), and never leaves the range of the given values.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ class RoundedPath:
     """Poses in order, joined by straight legs with rounded corners.
 
     Attributes:
-        pose_names: (n,) of the pose's coordinates, those of the tool point first.
-        poses: (k, n) with k >= 2; None for an angle leaves it to its neighbours.
-        blends: (k - 2,) what each corner takes off both of its legs [m]; with 0 it is a stop, unless the path goes
-            straight on there (`legs` says what is straight).
+        pose_names: (n,) names of the pose's coordinates, those of the tool point first.
+        poses: (k, n) with k >= 2. An angle that is None is interpolated between its neighbours.
+        blends: (k - 2,) length that each corner takes off both of its legs [m]. With 0 the tool stops there, unless the
+            path goes straight on (see `legs`).
 
-    Two poses in a row at the same place turn the tool there, from stop to stop; they give all their angles.
+    Two poses in a row at the same place turn the tool there, from stop to stop. Both must give all their angles.
 
     Raises:
-        InvalidPath: a value that is not finite, two equal poses in a row, a reversal that is to be rounded, or
-            corners that overlap; the pose is named, counted from 1.
-        InvalidValue: numbers of poses, coordinates or blends that do not fit together.
+        InvalidPath: a value is not finite, two poses in a row are equal, a reversal has a blend, or corners overlap;
+            the message names the pose, counted from 1.
+        InvalidValue: the numbers of poses, coordinates or blends do not fit together.
     """
 
     pose_names: tuple[str, ...]
@@ -150,7 +150,9 @@ class RoundedPath:
         in_place = turning_in_place(points)
         for k in np.flatnonzero(in_place).tolist():
             if None in (*self.poses[k], *self.poses[k + 1]):
-                expected = f"another one than that of pose {k + 1}, or all angles of both to turn the tool there"
+                expected = (
+                    f"a place other than that of pose {k + 1}, or all angles of both poses to turn the tool there"
+                )
                 raise InvalidPath(k + 2, "place", points[k + 1].tolist(), expected)
         angles = np.array([pose[count:] for pose in self.poses], dtype=float)  # NaN where none is given
         turns = np.where(in_place, np.linalg.norm(np.diff(angles, axis=0), axis=1), 0.0)

@@ -1,8 +1,8 @@
-"""Whether a path can be passed at speed.
+"""Check that a path can be passed at speed.
 
-A path that is built from smooth shapes knows where its tangent jumps. Of any other path samples tell, at its own scale:
-an interval over which the tangent's change is not what its derivative explains is halved. A curve is explained at
-last, however sharp it is; a jump is not, and the narrow interval that is left says where it is.
+A path that is built from smooth shapes knows where its tangent jumps. Any other path is sampled, at its own scale. If
+the tangent's change over an interval differs from the integral of its derivative, the interval is halved. For a curve,
+even a sharp one, the two agree at last. For a jump they never do, and the narrow interval that is left shows its place.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def require_smooth(path: Path) -> None:
     """Check that the tangent of a path jumps nowhere inside.
 
     Args:
-        path: any path; one that knows its stops is believed.
+        path: any path. If it knows its stops, no samples are needed.
 
     Raises:
         RoughPath: it has a stop inside, its tangent jumps or is not of unit length, or it is not a number somewhere.

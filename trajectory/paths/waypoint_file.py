@@ -1,8 +1,8 @@
-"""Waypoints as CSV: a header with the pose's names, then one pose a row, in order.
+"""Waypoints as CSV: a header with the pose's names, then one pose in each row, in order.
 
-A column is named as its coordinate, in m or rad, or with `_mm` or `_deg` behind it. A column `blend` (or `blend_mm`) is
-what the corner at that pose takes off both of its legs; 0, or nothing, stops there. Between the first pose and the last
-one an angle may be left empty. Lines that are empty or start with # are passed over.
+A column has the name of its coordinate, in m or rad, or this name with `_mm` or `_deg`. A column `blend` (or
+`blend_mm`) is the length that the corner at that pose takes off both of its legs. With 0, or an empty cell, the tool
+stops there. An angle may be empty, except in the first and the last pose. Empty lines and lines with # are ignored.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def read_waypoints(file: FilePath | str, pose_names: Sequence[str]) -> RoundedPa
         pose_names: (n,) of the robot that is to follow it.
 
     Raises:
-        WaypointFileError: naming line and column, what was found and what would be right.
+        WaypointFileError: it names line and column, what was found and what would be right.
     """
     file = FilePath(file)
     try:
@@ -104,7 +104,7 @@ def _path(file: FilePath, rows: Sequence[Row], pose_names: tuple[str, ...]) -> R
         raise WaypointFileError(file, line, "", f"{len(rows)} pose" if rows else "no poses", "at least 2")
     for number, values, spelled in (rows[0], rows[-1]):
         if values.get(_BLEND):
-            raise WaypointFileError(file, number, *spelled[_BLEND], "nothing: the path ends here")
+            raise WaypointFileError(file, number, *spelled[_BLEND], "no blend, as the path ends here")
     poses = tuple(tuple(values[name] for name in pose_names) for _, values, _ in rows)
     blends = tuple(values.get(_BLEND) or 0.0 for _, values, _ in rows[1:-1])
     try:

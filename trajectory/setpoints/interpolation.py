@@ -1,12 +1,12 @@
-"""What a drive makes of set-points: its own interpolation between them, measured against the exact motion.
+"""How a drive interpolates between set-points, compared with the exact motion.
 
     linear   cyclic synchronous position at the bus period
     cubic    position and velocity at both ends (PVT)
     quintic  position, velocity and acceleration at both ends
 
-Linear set-points give steps of speed: their acceleration is an impulse and is left out. Where the law's acceleration
-steps between two set-points, cubics and quintics swing beyond it: that peak is no fault of the file, and a jerk-limited
-law is what takes it away. Extremes are sampled, `PARTS` a period, both ends of each period from inside.
+Linear interpolation makes the speed jump, so its acceleration is an impulse and is left out. If the law's acceleration
+steps between two set-points, cubics and quintics exceed it. That peak is not an error of the file; a jerk-limited law
+avoids it. Extremes are sampled at `PARTS` parts of each period, both ends of each period from inside.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Set-points as CSV: commented header lines of `name: JSON value`, the columns' names, then one row a period.
+"""Set-points as CSV: commented header lines of `name: JSON value`, the columns' names, then one row for each period.
 
-Numbers are written with as many digits as bring them back exactly. A file appears whole or not at all: it is written
-beside its final place and then moved there.
+Numbers have enough digits to be read back exactly. A file appears complete or not at all: it is written beside its
+final place and then moved there.
 """
 
 from __future__ import annotations
@@ -52,10 +52,10 @@ def setpoints_text(setpoints: Setpoints) -> str:
 
 
 def read_setpoints(file: FilePath | str) -> Setpoints:
-    """Read what `write_setpoints` wrote; strict.
+    """Read a file that `write_setpoints` wrote. Any difference from its format is an error.
 
     Raises:
-        SetpointFileError: naming the line, what was found and what was expected.
+        SetpointFileError: it names the line, what was found and what was expected.
     """
     file = FilePath(file)
     try:

@@ -1,4 +1,4 @@
-"""Set-points of a cycle: what the drives are told each period."""
+"""Set-points of a cycle: the values that the drives get in each period."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _CONSISTENT = 1e-9  # of the loop closure [rad, or over the robot's size]
 
 @dataclass(frozen=True, eq=False)
 class Setpoints(Value):
-    """One row a period, the last one closes the cycle; SI units.
+    """One row for each period, in SI units. The last row closes the cycle.
 
     Attributes:
         time: (k,) [s].
@@ -50,7 +50,7 @@ class Setpoints(Value):
         pose_names: (n,) the tool point's coordinates first.
         joint_names: (m,).
         joint_units: (m,) rad or m.
-        header: plain data on what the set-points are for, by name.
+        header: plain data by name: how the set-points were made, and for which robot and limits.
     """
 
     time: Array
@@ -112,7 +112,7 @@ class Setpoints(Value):
         """Check that every number is finite.
 
         Raises:
-            InvalidValue: naming the set-point and its column.
+            InvalidValue: it names the set-point and its column.
         """
         table = self.table()
         if not np.isfinite(table).all():
@@ -120,10 +120,11 @@ class Setpoints(Value):
             raise InvalidValue(f"set-point {row}, {self.columns[column]}", table[row, column], "a finite number")
 
     def require_consistent(self, robot: Mechanism) -> None:
-        """Check that these set-points are for this robot: its geometry, and joints that belong to the poses.
+        """Check that these set-points are for this robot: its mechanism and geometry, and joints that fit the poses.
 
         Raises:
-            InvalidValue: another mechanism or geometry, or a loop closure that is not zero; row and limb are named.
+            InvalidValue: the mechanism or the geometry is another one, or the loop closure is not zero; it names row
+                and limb.
         """
         found = (self.header.get("mechanism"), self.header.get("geometry hash"))
         expected = (type(robot).__name__, robot.geometry.digest)
@@ -133,7 +134,9 @@ class Setpoints(Value):
         if not residual.max() <= _CONSISTENT:
             row, limb = (int(k) for k in np.unravel_index(int(residual.argmax()), residual.shape))
             what = f"loop closure of set-point {row}, limb {limb + 1} [rad, or over the robot's size]"
-            raise InvalidValue(what, float(residual[row, limb]), f"at most {_CONSISTENT}: joints that fit the pose")
+            raise InvalidValue(
+                what, float(residual[row, limb]), f"at most {_CONSISTENT}, so that the joints fit the pose"
+            )
 
 
 def cycle_setpoints(cycle: Cycle, period: float, joint_units: Sequence[str]) -> Setpoints:
@@ -171,7 +174,7 @@ def _sampled(cycle: Cycle, piece: Piece, count: int, last: bool) -> Motion:
 
 
 def _between(cycle: Cycle, counts: Sequence[int], setpoints: Setpoints) -> dict[str, dict[str, float]]:
-    """What each interpolation of a drive would make of the set-points."""
+    """The errors of each interpolation of a drive between the set-points."""
     parts = []
     for piece, count in zip(cycle.pieces, counts, strict=True):
         times = np.linspace(0.0, piece.duration, count * PARTS + 1)
@@ -183,7 +186,7 @@ def _between(cycle: Cycle, counts: Sequence[int], setpoints: Setpoints) -> dict[
 
 
 def robot_header(robot: Mechanism, limits: Limits) -> dict[str, Any]:
-    """What every set-point file says of its robot; plain data, lists and no tuples, so that it reads back equal."""
+    """The header's data about the robot: plain data, with lists for tuples, so that it is equal when read back."""
     header: dict[str, Any] = {
         "units of this header": "SI and radians unless a name says so",
         "made by": f"linkwright {version('linkwright')}",
@@ -199,7 +202,7 @@ def robot_header(robot: Mechanism, limits: Limits) -> dict[str, Any]:
 
 
 def _spelled(value: Any) -> Any:
-    """Plain data with words for infinite numbers, which JSON has not: a joint may go any way."""
+    """Plain data with words for infinite numbers, which JSON does not have: such a joint has no range."""
     if isinstance(value, dict):
         return {key: _spelled(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):

@@ -8,11 +8,11 @@ manipulators along specified paths", IJRR 1985:
     torque               i u + k x + c,  its parts by the rate, Coulomb friction in c (`torque_terms`)
     tool acceleration    |p' u + p'' x|, a disc
 
-with a dash for the derivative by tau. The pace takes the least u that they allow, all the way down. No other pace has
-a lower x anywhere, since it would have to cross this one with less than the least u: so this is the shortest way to
-rest. (0, 0) and (0, 1), the motion held still and the motion itself, are within the limits, and so by convexity is
-(0, x) between them: u is never above 0, speeds never rise, and the end of the motion is never passed. The acceleration
-steps where braking starts and where it ends.
+with a dash for the derivative by tau. The pace always takes the least u that the limits allow. No other pace has a
+lower x anywhere, since it would have to cross this one with less than the least u. So this is the shortest way to
+rest. The points (0, 0) and (0, 1), which are rest and the motion itself, are within the limits. By convexity so is
+every (0, x) between them. So u is never above 0, speeds never rise, and the end of the motion is never passed. The
+acceleration steps where braking starts and where it ends.
 """
 
 from __future__ import annotations

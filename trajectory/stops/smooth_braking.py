@@ -1,14 +1,14 @@
-"""The pace of a stop on a motion's own way that keeps the limits of the jerk too.
+"""The pace of a stop on a motion's own way that also keeps the jerk limit.
 
-The motion p(tau) is travelled at a pace tau(t) that never rises, from 1 to 0 with zero tau'' at both ends, tau'''
-constant in each interval. What it makes small is the mean of x = tau'^2 over the way: the energy of motion, wherever
-something is met. Without limits of the jerk the pace of `braking` has the least, as it has the least x everywhere.
+The motion p(tau) has a pace tau' that never rises, from 1 to 0, with zero tau'' at both ends and tau''' constant in
+each interval. The pace makes the mean of x = tau'^2 over the way small: this is the energy of motion if the robot hits
+something. Without a jerk limit the pace of `braking` has the least mean, as it has the least x everywhere.
 
-The limits are linear in x and tau'' once their tangents stand (`smooth_braking_rows`): a linear programme finds the
-pace, new tangents at its answer the next one, until x falls no more (`smooth_pace`). A motion within its limits keeps
-the rows of the first programme, so that one has an answer from any instant. The knots then stand where its pace needs
-them, closer together towards where it rests, and all is done again until that place stays. That it does is not sure,
-nor that the limits hold between the knots. The answer is a local one.
+With tangents instead of curves, the limits are linear in x and tau'' (`smooth_braking_rows`). A linear programme finds
+the pace. New tangents at its answer give the next programme, until x stops falling (`smooth_pace`). A motion within its
+limits keeps the rows of the first programme, so that programme has an answer from any instant. Then the knots are
+placed where this pace needs them, closer together near the rest, and all is repeated until the place of the rest no
+longer changes. Convergence is not guaranteed, and the limits may fail between the knots. The answer is a local optimum.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ _HIGHER = 0.001  # a guess on new knots over the answer on the old ones: a tange
 def smooth_braking(
     robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float, margin: float
 ) -> TimeLaw:
-    """The time of the motion as a law of the time since `start`.
+    """The motion's time as a law of the time since `start`.
 
     Args:
-        robot, timed, start, limits, payload: as for `emergency_stop`, with a limit of the jerk.
-        margin: share of the limits to keep in hand once the pace is well below 1.
+        robot, timed, start, limits, payload: as for `emergency_stop`, with a jerk limit.
+        margin: share of the limits that is left unused when the pace is well below 1.
 
     Raises:
         LimitsExceeded: the motion breaks a limit after `start`.
@@ -67,7 +67,9 @@ def smooth_braking(
         if found is not None and rest <= last and abs(rest - law.position[-1]) <= _SETTLED * way:
             return found
         before = pace
-    raise TimingFailed("emergency stop", asked, "no pace to rest" if before is None else "no pace that settles")
+    raise TimingFailed(
+        "emergency stop", asked, "no pace leads to rest" if before is None else "the search for the pace did not settle"
+    )
 
 
 def _least(

@@ -1,8 +1,7 @@
-"""An emergency stop along the path: from any instant of a motion to rest, on the way that it was on.
+"""An emergency stop along the path: from any instant of a motion to rest, on the motion's own way.
 
-The motion is travelled at a pace that falls from 1 to 0: where a limit of the jerk is given, with a continuous
-acceleration (`smooth_braking`), and else in the shortest way, with steps where braking starts and where it ends
-(`braking`).
+The pace of the motion falls from 1 to 0. With a jerk limit the acceleration is continuous (`smooth_braking`). Without
+one the stop is as short as possible, and the acceleration steps where braking starts and where it ends (`braking`).
 """
 
 from __future__ import annotations
@@ -27,12 +26,12 @@ _BRAKING = [limit for limit in LIMITS if limit.kind in (Linear, Disc, Third)]
 
 @dataclass(frozen=True, eq=False)
 class EmergencyStop(Value):
-    """A stop that was verified.
+    """A verified stop.
 
     Attributes:
-        motion: from the state at `start` to rest.
-        start: when it interrupts the motion [s].
-        verification: of the stop, and that it takes over the motion at `start`.
+        motion: the motion from the state at `start` to rest.
+        start: the time when the stop interrupts the motion [s].
+        verification: the measurements of the stop; they include that it continues the motion at `start`.
     """
 
     motion: PacedMotion
@@ -52,22 +51,22 @@ class EmergencyStop(Value):
 
 
 def emergency_stop(robot: Mechanism, timed: TimedMotion, start: float, limits: Limits, payload: float) -> EmergencyStop:
-    """A stop on the motion's own way, within every limit but the RMS torque's, which is of whole ways.
+    """A stop on the motion's own way, within every limit except the RMS torque, which belongs to whole ways.
 
-    Without a limit of the jerk it is the shortest one; with one, the mean square of its pace over the way is small, and
-    where none is found from `start` it goes on to the motion's next knot, or the one after, and brakes from there.
+    Without a jerk limit it is the shortest stop. With one, the mean square of its pace over the way is small. If no
+    pace is found from `start`, the motion goes on to its next knot, or the one after, and brakes from there.
 
     Args:
         robot: any mechanism with the motion's kind of pose.
         timed: a motion within these limits.
-        start: when it interrupts the motion, inside (0, T) [s].
-        limits: of joints and tool.
+        start: the time when the stop interrupts the motion, inside (0, T) [s].
+        limits: limits of joints and tool.
         payload: mass at the tool [kg].
 
     Raises:
-        InvalidValue: a start at which there is no motion, or nothing that limits the braking.
-        LimitsExceeded: the stop breaks a limit, as where the motion already does.
-        TimingFailed: no pace was found that keeps the limits of the jerk.
+        InvalidValue: the start is outside the motion, or no limit bounds the braking.
+        LimitsExceeded: the stop breaks a limit, for example because the motion does.
+        TimingFailed: no pace was found that keeps the jerk limit.
     """
     if not 0.0 < start < timed.duration:
         raise InvalidValue("start of an emergency stop", start, f"inside (0, {timed.duration:.6g}) s")

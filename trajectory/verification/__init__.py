@@ -1,4 +1,4 @@
-"""Independent verification of a motion: it imports nothing from what made it."""
+"""Independent verification of a motion. It imports nothing from the timing laws."""
 
 from trajectory.verification.path_certificate import PathCertificate, Way, certify_path, worst_of
 from trajectory.verification.sampling import integrals, parts_of

@@ -1,8 +1,8 @@
-"""How far the joints' motion and the torque can be, between samples, from what they are at the samples.
+"""Bounds of the joints' motion and the torque between samples.
 
-Over a short time a quantity f is within r max |f'| of its value in the middle, r half of that time: an interval kernel,
-rounded outward, bounds f' from bounds of the pose's motion, and these follow from bounds of its fourth derivative, one
-order after the other. So nothing is left between the samples.
+Over a time of length 2 r, a quantity f is within r max |f'| of its value in the middle. Interval arithmetic, rounded
+outward, bounds f' from bounds of the pose's motion. These follow from bounds of the pose's fourth derivative, one order
+after the other. So the bounds hold at every instant between the samples.
 """
 
 from __future__ import annotations

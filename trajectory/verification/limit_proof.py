@@ -1,7 +1,7 @@
 """Proof that a motion keeps its limits at every instant: upper bounds of its use of them, over parts that cover it.
 
-A part's use is at most that in its middle with the slack of `enclosure` on top. Parts whose bound is well above the
-highest use seen anywhere are cut again, until each bound is close to what is really used.
+The use in a part is at most that in its middle plus the slack of `enclosure`. Parts whose bound is well above the
+highest use seen anywhere are cut again, until each bound is close to the real use.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ _SLACK = 1e-11  # relative: more than what evaluation in double arithmetic is of
 
 
 def proved_use(robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float) -> dict[str, float]:
-    """Upper bounds over the whole motion of each limited quantity over its limit; infinite where none was found.
+    """Upper bounds over the whole motion of each limited quantity over its limit; infinite if none was found.
 
-    What the jerk is between two intervals, where the acceleration may jump, is not spoken of.
+    The bounds do not include the jerk exactly between two intervals, where the acceleration may jump.
 
     Args:
         robot, timed, limits, payload: as for `verify`.

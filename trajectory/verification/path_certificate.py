@@ -1,12 +1,13 @@
 """Proof that a robot keeps its margins at every pose of a path (`Margin.holds_on_paths`), over intervals of arc length.
 
-On an interval of s the path gives bounds of the pose and of its derivative. An interval kernel, rounded outward, bounds
-each margin over that box, and its gradient, which with the path's derivative bounds the slope f' along the path: so
-f(s) >= f(m) - max |f'| r, m the middle and r half of the interval (the centred form), or the natural bound where that
-is better. Intervals are halved until their bound is close to the lowest value seen.
+On an interval of s the path gives bounds of the pose and of its derivative. Interval arithmetic, rounded outward,
+bounds each margin f over that box. It also bounds the margin's gradient, which together with the path's derivative
+bounds the slope f' along the path. So f(s) >= f(m) - max |f'| r, with m the middle and r half of the interval (the
+centred form). The better of the two bounds is used. Intervals are halved until their bound is close to the lowest
+value seen.
 
-What it rests on: the kernel's assumptions (`kinematics/evaluation/interval_interpreter.py`), and that a path evaluated
-in double arithmetic is right to 1e-12, by which its bounds are widened.
+The proof relies on the assumptions of `kinematics/evaluation/interval_interpreter.py`, and on paths that are evaluated
+to 1e-12 in double arithmetic; their bounds are widened by that.
 """
 
 from __future__ import annotations
@@ -32,11 +33,11 @@ _UP = 1.0 + 2.0**-48  # covers the roundings of products and of their sum over f
 
 @dataclass(frozen=True)
 class PathCertificate:
-    """What holds at every pose of a path.
+    """The proved margins of every pose of a path.
 
     Attributes:
         margins: proved lower bounds, all above 0, of the margins that a path must keep, by name.
-        intervals: how many intervals of s the proof took.
+        intervals: the number of intervals of s in the proof.
     """
 
     margins: dict[str, float]
@@ -52,11 +53,11 @@ def certify_path(robot: Mechanism, path: Way) -> PathCertificate:
 
     Args:
         robot: any mechanism with the path's kind of pose.
-        path: smooth or not.
+        path: any path; it need not be smooth.
 
     Raises:
-        InvalidValue: another kind of pose.
-        PathRefused: a margin is not above 0, or could not be proved to be; arc length, pose and limb are named.
+        InvalidValue: the path has another kind of pose.
+        PathRefused: a margin is not above 0, or it could not be proved; the message has arc length, pose and limb.
     """
     require_poses_of(robot, path)
     claims = _Claims(robot, path)
@@ -84,7 +85,7 @@ def certify_path(robot: Mechanism, path: Way) -> PathCertificate:
 
 
 def worst_of(certificates: Sequence[PathCertificate]) -> PathCertificate:
-    """What holds on all of several ways."""
+    """The certificate that holds on all of several ways."""
     margins = {name: min(c.margins[name] for c in certificates) for name in certificates[0].margins}
     return PathCertificate(margins, sum(c.intervals for c in certificates))
 

@@ -1,4 +1,4 @@
-"""Samples of a motion: as dense as the motion needs, inside its smooth intervals and on both of their sides."""
+"""Samples of a motion, as dense as the motion needs: inside its smooth intervals and at both ends of each."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
 """Independent verification of a timed motion: densely in time, between the gridpoints and on both sides of each knot,
 those of the law and those of the path.
 
-Nothing here uses the coefficients from which a law was made: the pose and its time derivatives come from the path and
-the law, the joints from the inverse model's derivatives, the torque from inverse dynamics. The joints' speed must also
-be the integral of their acceleration, and their position that of their speed: so a cusp between samples, where every
-sample looks innocent, and derivatives that are not the path's are found. Peaks are measured on the samples; where these
-keep the limits, `proof` bounds what is left between them.
+Nothing here uses the coefficients that a law was made from. The pose and its time derivatives come from the path and
+the law, the joints from the derivatives of the inverse model, the torque from inverse dynamics. The joints' speed must
+also be the integral of their acceleration, and their position the integral of their speed. This finds a cusp between
+samples that no sample shows, and wrong derivatives of a path. Peaks are measured on the samples. If these keep the
+limits, `limit_proof` bounds the motion between them.
 """
 
 from __future__ import annotations
@@ -53,20 +53,20 @@ class Peak(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Verification(Value):
-    """What was measured, and what was proved.
+    """The measured and the proved figures of a motion.
 
     Attributes:
         law: name of the law.
-        duration: of the motion [s].
-        peaks: of every limited quantity, and of those that tell something without a limit, such as the torque.
+        duration: duration of the motion [s].
+        peaks: the peak of every limited quantity, and of others that are useful without a limit, such as the torque.
         residuals: of the end poses [rad, or over the robot's size], of the end speeds over the largest, of the loop
             closure [rad, or over the robot's size]; how many samples are in another assembly mode; of the joints'
             integrals, over the largest speed and over the way of the joints.
         reach: the worst limb's margin [m]; negative or NaN fails.
         rms_torque: (m,) over the whole duration [N m or N].
         rms_over_peak: (m,) each joint's RMS torque over its own peak; 0 where it bears none.
-        proved: each limited quantity over its limit is at most this at every instant; empty where a peak fails already.
-        notes: what was left out, and why.
+        proved: proved upper bounds of each limited quantity over its limit, at every instant; empty if a peak fails.
+        notes: checks that were left out, and why.
     """
 
     law: str
@@ -86,7 +86,10 @@ class Verification(Value):
 
     @property
     def failures(self) -> dict[str, float]:
-        """What fails: peaks, proved bounds and residuals over their limits, a reach margin [m]; NaN always fails."""
+        """The checks that fail: peaks, proved bounds and residuals above their limits, a reach margin [m].
+
+        NaN fails.
+        """
         failed = {name: ratio for name, ratio in self.peak_over_limit.items() if not ratio <= 1.0}
         failed |= {p.quantity: math.nan for p in self.peaks if math.isnan(p.value)}
         over = {name: value / _TOLERANCES[name] for name, value in self.residuals.items()}
@@ -101,7 +104,7 @@ class Verification(Value):
         return not self.failures
 
     def rows(self) -> list[tuple[str, ...]]:
-        """A table: quantity, peak, limit, peak over limit, what that is proved to be at most, joint, time [s]."""
+        """A table: quantity, peak, limit, peak over limit, the proved upper bound of that, joint, time [s]."""
 
         def number(value: float | None) -> str:
             return "" if value is None else f"{value:.6g}"
@@ -124,17 +127,17 @@ class Verification(Value):
 def verify(
     robot: Mechanism, timed: TimedMotion, limits: Limits, payload: float, before: PoseMotion | None = None
 ) -> Verification:
-    """Measure a timed motion against its limits, and prove what the samples show.
+    """Measure a timed motion against its limits, and prove the limits between the samples.
 
     Args:
         robot: any mechanism with the motion's kind of pose.
         timed: the motion, to rest.
-        limits: of joints and tool. Where the acceleration jumps, a jerk limit fails with an infinite peak.
+        limits: limits of joints and tool. If the acceleration jumps, a jerk limit fails with an infinite peak.
         payload: mass at the tool [kg].
-        before: (n,) what it takes over at its start; rest at the start that was asked for, where none is given.
+        before: (n,) the state that the motion must continue at its start; None is rest at the start that was asked for.
 
     Raises:
-        InvalidShape: another kind of pose.
+        InvalidShape: the motion has another kind of pose.
     """
     parts = settled_parts(robot, timed, _TOLERANCES["integral of acceleration"], _TOLERANCES["integral of speed"])
     times, motion = parts.times(timed), motion_of(robot, parts.tool(timed), payload)

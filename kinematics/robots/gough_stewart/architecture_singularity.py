@@ -1,4 +1,4 @@
-"""Hexapods whose legs are dependent at every pose: recognised, and the reason named.
+"""Find hexapods whose legs are dependent at every pose, and name the reason.
 
 The determinant of the inverse Jacobian is a polynomial of the pose, so it vanishes everywhere as soon as it vanishes at
 a few poses without special position. The best-known reasons are named: Ma and Angeles (1991) for similar regular

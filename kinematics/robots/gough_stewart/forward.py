@@ -28,7 +28,7 @@ _LONGEST_TURN = 0.5  # rotation of one step [rad], and its translation over the 
 
 
 class ForwardSolution(NamedTuple):
-    """What Newton's method found.
+    """The answer of Newton's method.
 
     Attributes:
         pose: (..., 6), NaN where it did not converge.

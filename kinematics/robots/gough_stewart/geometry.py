@@ -41,8 +41,8 @@ class GoughStewartGeometry(GeometryRecord):
     them to where the chapter puts them.
 
     Raises:
-        InvalidGeometry: besides what any geometry refuses: a frame is not a rigid transform, or the architecture
-            is singular at every pose (the message says why).
+        InvalidGeometry: as for any geometry; or a frame is not a rigid transform, or the architecture is singular at
+            every pose (the message says why).
     """
 
     base_points: tuple[tuple[float, ...], ...] = length(
@@ -170,8 +170,8 @@ class GoughStewartRanges(RodRanges):
     """Legs of two stages, joints that tilt up to 52 degrees: an assumption of this project, not a datasheet.
 
     Attributes:
-        rest: the tool point [m] at which, with the platform not turned, each leg lies along the axes of its two joints;
-            None: they do so at the robot's home.
+        rest: the tool point [m] where, with the platform not turned, each leg is along the axes of its two joints; None
+            takes the robot's home.
     """
 
     dimensions: ClassVar[Mapping[str, str]] = {**RodRanges.dimensions, "rest": "length"}
@@ -195,7 +195,7 @@ class SingularArchitecture(InvalidGeometry):
     def __init__(self, reason: str) -> None:
         self.reason = reason
         super().__init__(
-            "GoughStewart", "base_points and platform_points", f"a singular architecture, as {reason}",
+            "GoughStewart", "base_points and platform_points", f"an architecture singular at every pose: {reason}",
             "legs that are independent at some pose",
         )  # fmt: skip
 

@@ -29,7 +29,7 @@ _SCREW = ("x", "y", "z", "about x", "about y", "about z")
 class GoughStewart(SixLegs):
     """Pose [x, y, z, roll, pitch, yaw], joints q1..q6, the leg lengths |A_i B_i|.
 
-    A leg reaches every point but its own base joint; what its stroke leaves of that is the margin `joint_travel`.
+    A leg reaches every point except its own base joint. The limits of its stroke are in the margin `joint_travel`.
     """
 
     Geometry = GoughStewartGeometry
@@ -44,10 +44,10 @@ class GoughStewart(SixLegs):
 
     @staticmethod
     def default_home(geometry: GoughStewartGeometry) -> tuple[float, ...]:
-        """The platform above the base, turned to match it best.
+        """The platform above the base, with the rotation that matches the base best.
 
-        Above is along the normal of the base's mean plane, on the side of R_0's z axis (or x, or y, if level with it),
-        three quarters of the mean radii's sum away.
+        It is along the normal of the base's mean plane, on the side of R_0's z axis (or of x, or of y, if z is in that
+        plane). The distance is three quarters of the sum of the mean radii.
         """
         base, platform = geometry.in_reference_frame(), geometry.in_tool_frame()
         a, b = base - base.mean(axis=0), platform - platform.mean(axis=0)
@@ -180,7 +180,7 @@ class GoughStewart(SixLegs):
         return lengths, jacobian
 
     def leg_errors(self, pose: Array, joints: Array) -> tuple[Array, Array]:
-        """(k, 6) what each leg lacks to have the length wanted [m], and the inverse Jacobian (k, 6, 6)."""
+        """(k, 6) missing length of each leg [m], and the inverse Jacobian (k, 6, 6)."""
         lengths, jacobian = self.lengths_and_jacobian(pose)
         return joints - lengths, jacobian
 

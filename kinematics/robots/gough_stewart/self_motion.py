@@ -1,4 +1,4 @@
-"""Poses of a 6-UPS platform that are not isolated: with its legs kept at their lengths, it can still move.
+"""Poses of a 6-UPS platform that are not isolated: with its legs locked, the platform can still move.
 
 Where a path of the continuation ends at a point of deficient rank, a small step along each null direction is brought
 back onto the quadrics by Gauss-Newton. From a multiple but isolated point it falls back; on a continuum it stays away.

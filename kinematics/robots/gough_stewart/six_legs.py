@@ -20,7 +20,7 @@ from kinematics.robots.gough_stewart.forward import ForwardSolution, solve_forwa
 
 
 class SixLegs(Mechanism):
-    """What the Gough-Stewart platform and the Hexa share."""
+    """The base of the Gough-Stewart platform and the Hexa."""
 
     geometry: Any
     inertia: Any
@@ -36,7 +36,7 @@ class SixLegs(Mechanism):
 
     @abstractmethod
     def leg_errors(self, pose: Array, joints: Array) -> tuple[Array, Array]:
-        """(k, 6) what each leg lacks to have its length [m], and the legs' inverse Jacobian (k, 6, 6) [8.20]."""
+        """(k, 6) missing length of each leg [m], and the legs' inverse Jacobian (k, 6, 6) [8.20]."""
 
     @abstractmethod
     def leg_sizes(self, joints: Array) -> tuple[Array, Array]:

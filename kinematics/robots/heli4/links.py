@@ -1,4 +1,4 @@
-"""Heli4's links for simulators: arms on the base, and plates that the rods keep from turning."""
+"""Heli4's links for simulators: arms on the base, and plates that cannot turn because of the rods."""
 
 from __future__ import annotations
 

@@ -63,11 +63,11 @@ def candidates(problem: Halves, every: bool) -> tuple[Array, Array]:
 
     Args:
         problem: k of them.
-        every: look at the octic's stationary points too, where symmetry gives two placements the same height.
+        every: also use the octic's stationary points, for two placements that have the same height by symmetry.
 
     Returns:
-        rows (j,): which problem; (j, 2, 3) the two bodies' points. Some appear twice, some may prove wrong. None where
-        of a body's spheres one is above the other.
+        rows (j,): the problem of each placement; (j, 2, 3) the two bodies' points. Some appear twice, some may be
+        wrong. There is none if one sphere of a body is above the other.
     """
     apart = np.abs(problem.centres[:, 1::2, :2] - problem.centres[:, ::2, :2]).max(axis=2)
     posed = np.flatnonzero(np.isfinite(problem.centres).all(axis=(1, 2)) & (apart > 0.0).all(axis=1))

@@ -45,7 +45,7 @@ class Par4Geometry(HalvesGeometry):
     """A robot of the Quattro's size: an assumption of this project, not a datasheet.
 
     Raises:
-        InvalidGeometry: besides what any geometry refuses: both limbs of a half have the same azimuth.
+        InvalidGeometry: as for any geometry; or both limbs of a half have the same azimuth.
     """
 
     base_radius: float = length(0.275, doc="R, of the actuators' axes")
@@ -60,11 +60,11 @@ class Par4Geometry(HalvesGeometry):
 
 @dataclass(frozen=True)
 class Par4Inertia(ArmInertia):
-    """Arms as everywhere here; and the platform.
+    """The masses of the arms and the platform.
 
     Attributes:
-        half_masses: of the two halves.
-        bars_mass, bars_inertia: of both bars and the gear, their mass about the tool point, inertia about e_z.
+        half_masses: masses of the two halves.
+        bars_mass, bars_inertia: mass of both bars and the gear, at the tool point, and their inertia about e_z.
         tool: inertia of the tool about e_z; the payload is a point at the tool point.
     """
 
@@ -75,9 +75,9 @@ class Par4Inertia(ArmInertia):
 
 
 class Par4(RotaryLimbs):
-    """Pose [x, y, z, theta], joints q1..q4 measured from e_z outward; elbows out.
+    """Pose [x, y, z, theta], joints q1..q4 measured from e_z outward. Elbows are out.
 
-    A pose stands for bars turned by theta / k; beyond half a turn of the bars, the same place is another theta, and the
+    The bars are turned by psi = theta / k. Beyond half a turn of the bars, the same place has another theta. The
     forward models give the one with |psi| <= pi.
     """
 
@@ -96,12 +96,12 @@ class Par4(RotaryLimbs):
 
     @property
     def characteristic_length(self) -> float:
-        """b / k, the travel between the halves a radian of the tool [m]."""
+        """b / k, the travel between the halves for each radian of the tool [m]."""
         return self.geometry.bar_length / self.geometry.amplification
 
     @staticmethod
     def default_home(geometry: Par4Geometry) -> tuple[float, ...]:
-        """On the axis below the drives, in the middle of the reach."""
+        """A pose on the axis below the drives, in the middle of the reach."""
         g = geometry
         return 0.0, 0.0, -height_in_reach(g.base_radius, g.platform_radius, g.arm_length, g.rod_length), 0.0
 

@@ -1,4 +1,4 @@
-"""The pi joint: how far Par4's parallelogram of bars is from lying flat."""
+"""The pi joint: how far Par4's parallelogram of bars is from being flat."""
 
 from __future__ import annotations
 

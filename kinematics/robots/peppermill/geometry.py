@@ -6,17 +6,18 @@ from dataclasses import dataclass
 
 from kinematics.machine import GeometryRecord, InertiaRecord, Pair, RodRanges, length, screw_pitch
 
-# Of the larger pitch. A rounding of a nut's height [m] turns theta by 2 pi / |p_1 - p_2| times as much [rad]: at this
-# difference theta is known to some 1e-8 rad, at 1e-11 it would be to 1e-3.
+# Share of the larger pitch. Rounding of a nut's height [m] changes theta by 2 pi / |p_1 - p_2| times as much [rad]. At
+# this difference of pitches theta is known to about 1e-8 rad; at 1e-11 only to 1e-3.
 _SAME_PITCH = 1e-6
 
 
 @dataclass(frozen=True)
 class PeppermillGeometry(GeometryRecord):
-    """The paper gives no dimensions: these serve a 0.4 x 0.4 x 0.1 m box about the origin with a turn either way.
+    """The paper gives no dimensions. These are for a box of 0.4 x 0.4 x 0.1 m about the origin, with a turn either way.
 
     Raises:
-        InvalidGeometry: also where the two pitches are equal to a millionth, the architecture singularity of (48).
+        InvalidGeometry: as for any geometry; or the two pitches are equal to a millionth, the architecture singularity
+            of (48).
     """
 
     proximal_lengths: tuple[float, ...] = length((0.20, 0.20), doc="r_i, drive axis to elbow")
@@ -29,10 +30,10 @@ class PeppermillGeometry(GeometryRecord):
         super().__post_init__()
         first, second = self.pitches
         if abs(first - second) <= _SAME_PITCH * max(abs(first), abs(second)):
-            reason = "equal ones are an architecture singularity, det A of (48) is zero in every pose"
+            reason = "with equal pitches det A of (48) is zero at every pose (an architecture singularity)"
             raise self._invalid("pitches", self.pitches, f"two different pitches: {reason}")
         if self.drive_pitch < 0.0:
-            raise self._invalid("drive_pitch", self.drive_pitch, "a pitch > 0 m/turn, as (A.2) has it")
+            raise self._invalid("drive_pitch", self.drive_pitch, "a pitch > 0 m/turn, as in (A.2)")
 
 
 @dataclass(frozen=True)
@@ -41,12 +42,13 @@ class PeppermillInertia(InertiaRecord):
 
     Attributes:
         motor: inertia of each motor with its nut, about its axis.
-        carriage_mass, carriage: what slides along a drive axis, and its inertia about that axis.
+        carriage_mass, carriage: mass of the part that slides along a drive axis, and its inertia about that axis.
         proximal_mass, proximal_centre, proximal_factor: a proximal link's mass, its centre of mass c as a fraction of
             r_i, and its inertia about the drive axis over m c^2.
-        distal_mass: a distal link with its pairs.
-        nut_mass: each nut of the platform's screws.
-        platform_mass, tool: platform with its screws and tool, and its inertia about e_z; the payload is a point at C.
+        distal_mass: mass of a distal link with its joints.
+        nut_mass: mass of each nut of the platform's screws.
+        platform_mass, tool: mass of the platform with screws and tool, and its inertia about e_z; the payload is a
+            point at C.
     """
 
     motor: float = 3.0e-4
@@ -63,9 +65,9 @@ class PeppermillInertia(InertiaRecord):
 
 @dataclass(frozen=True)
 class PeppermillRanges(RodRanges):
-    """Slides of 0.6 m and arms that turn 3 rad: an assumption of this project, the paper gives no limits.
+    """Slides of 0.6 m and arms that turn 3 rad: an assumption of this project, as the paper gives no limits.
 
-    `passive` limits what the elbows turn from a right angle, and the distal links' ends from upright.
+    `passive` limits the angles of the elbows from a right angle, and of the distal links' ends from upright.
     """
 
     joints: Pair | tuple[Pair, ...] = ((-0.3, 0.3), (-0.3, 0.3), (-1.2, 1.8), (0.4, 3.4))

@@ -1,8 +1,8 @@
 """The Peppermill's two limbs in closed form, each in its own plane.
 
-A limb moves in the plane across its drive axis a_i, spanned by x_i and y_i: (j, k) for limb 1 and (k, i) for limb 2.
-There it is a two-bar chain from A_i to P_i whose proximal link r_i the drive turns by theta_i. All functions work on
-both limbs at once, on (2,) columns; equation numbers are the paper's.
+A limb moves in the plane across its drive axis a_i, spanned by x_i and y_i: (j, k) for limb 1 and (k, i) for limb 2. In
+this plane it is a chain of two bars from A_i to P_i. The drive turns its proximal link r_i by theta_i. All functions
+work on both limbs at once, on (2,) columns. Equation numbers are those of the paper.
 """
 
 from __future__ import annotations
@@ -57,7 +57,10 @@ def cosines_and_sines(pose: ca.SX, elbows: tuple[int, ...], g: SimpleNamespace) 
 
 
 def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-    """(2,) how far |q_i| is inside [|r_i - l_i|, r_i + l_i] [m]; NaN where any theta_i closes."""
+    """(2,) distance of |q_i| from the ends of [|r_i - l_i|, r_i + l_i], inside positive [m].
+
+    NaN if any theta_i closes.
+    """
     q = target(pose, g)
     square = q.along_x**2 + q.along_y**2
     distance, near, far = ca.sqrt(square), g.proximal_lengths, g.distal_lengths

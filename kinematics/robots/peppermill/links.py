@@ -1,4 +1,4 @@
-"""Peppermill's links for simulators: a carriage and a proximal link a limb, and the platform with its two nuts."""
+"""Peppermill's links for simulators: a carriage and a proximal link for each limb; the platform with its two nuts."""
 
 from __future__ import annotations
 

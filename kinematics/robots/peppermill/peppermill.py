@@ -1,9 +1,9 @@
 """Peppermill (Harada and Angeles, Trans. CSME 2014): two limbs, four identical motors, a platform on two screws.
 
-A pair of motors slides limb i along its drive axis a_i by d_i and turns it about that axis by theta_i; the limbs hold
-the nuts of two coaxial screws of different pitch, so that the difference of their heights turns the platform. Pose
-[x, y, z, theta] with theta the paper's phi, which counts on beyond a turn. Equation numbers are the paper's; where it
-errs, the expression here follows from the closure and the documentation says so.
+A pair of motors slides limb i along its drive axis a_i by d_i and turns it about that axis by theta_i. The limbs hold
+the nuts of two coaxial screws of different pitch, so that the difference of the nuts' heights turns the platform. The
+pose is [x, y, z, theta]; theta is the paper's phi, which continues to count beyond a turn. Equation numbers are those
+of the paper. If an equation in print is wrong, the expression here follows from the closure, and a comment says so.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ _E_Z = ca.DM([0, 0, 1])
 class Peppermill(Mechanism):
     """Pose [x, y, z, theta], joints d1, d2 and theta1, theta2, moved by the motors 1L, 1R, 2L, 2R.
 
-    `inverse_jacobian` and `jacobians` speak of the joints d1, d2 [m], theta1, theta2 [rad]; indices, torques and
-    `actuator_jacobian` of the four identical motors [rad]. J_x is A of (47); J_q is B with r_i folded in, since the
-    paper's joint vector holds r_i dtheta_i.
+    `inverse_jacobian` and `jacobians` are for the joints d1, d2 [m], theta1, theta2 [rad]. Indices, torques and
+    `actuator_jacobian` are for the four identical motors [rad]. J_x is A of (47). J_q is B with the factors r_i, since
+    the paper's joint vector holds r_i dtheta_i.
     """
 
     Geometry = PeppermillGeometry
@@ -54,7 +54,7 @@ class Peppermill(Mechanism):
     joint_units = ("m", "m", "rad", "rad")
     rotations = (3,)
     counts_turns = True
-    # 750 W servos at 3000 rpm and three times their rated torque, asked for 2.5 m/s and 50 N: our assumption.
+    # 750 W servos at 3000 rpm and three times their rated torque; 2.5 m/s and 50 N are wanted. All are our assumptions.
     fvi_bounds = FviBounds(joint_speed=314.0, joint_effort=7.2, speed=2.5, force=50.0)
     margins = by_name(*STANDARD, PASSIVE_JOINT)
 
@@ -83,7 +83,7 @@ class Peppermill(Mechanism):
         return (1 if first > 0.0 else -1, 1 if second > 0.0 else -1)
 
     def conditions(self) -> dict[str, Any]:
-        """The sides too where they are not the usual ones: the distal links' ends rest as they point at home."""
+        """As in the base, with unusual sides too, as the ranges of the distal links' ends depend on them."""
         sides = {} if self.sides == limbs.SIDES[0] else {"sides": self.sides}
         return super().conditions() | sides
 
@@ -109,7 +109,7 @@ class Peppermill(Mechanism):
 
     @staticmethod
     def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """How much closer or farther P_i could be before it left the two-bar chain's ring [m]."""
+        """Distance of P_i from the inner and the outer circle of the chain's reach; the smaller one [m]."""
         return limbs.reach(pose, g)
 
     @classmethod
@@ -185,9 +185,10 @@ class Peppermill(Mechanism):
     # Masses and drawing.
 
     def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:
-        """The two R of each CRR limb: the elbow, at lambda_i, and that on the nut, which stays upright.
+        """The two R joints of each CRR limb: the elbow, at lambda_i, and the joint on the nut, which stays upright.
 
-        The elbow rests at a right angle; the distal link at the nut where it points up or down, as it does at home.
+        The elbow rests at a right angle. The joint at the nut rests where the distal link points up or down, as at
+        home.
         """
         _, _, elbows, nuts = self.points(pose, joints, g)
         theta, rods = joints[2:], nuts - elbows

@@ -22,7 +22,7 @@ _CLOSED = 1e-9  # of a link's length: joints further than this from the closure 
 
 
 class Links(NamedTuple):
-    """What both limbs do at a pose; the item's axis is the limb's.
+    """Directions and singular factors of both limbs at a pose; the axis of length 2 is that of the limbs.
 
     Attributes:
         proximal: u_i (..., 2, 3) in the base frame; (5).
@@ -59,7 +59,7 @@ def links(robot: Peppermill, pose: Array, joints: Array | None = None) -> Links:
     residual = np.abs(robot.closure_residual(pose, joints))
     gap = residual.max(initial=0.0, where=~np.isnan(residual))
     if gap > _CLOSED * max(robot.geometry.distal_lengths):
-        raise InvalidValue("joints", f"a loop open by {gap:.3g} m", "joints that belong to the pose")
+        raise InvalidValue("joints", f"a loop open by {gap:.3g} m", "joints that close the loop at the pose")
     lead = np.broadcast_shapes(pose.shape[:-1], joints.shape[:-1])
     both = [np.broadcast_to(a, (*lead, 4)) for a in (pose, joints)]
     return Links(*evaluate(robot.program(_links), *both))

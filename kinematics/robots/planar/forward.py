@@ -1,4 +1,4 @@
-"""Three points of a plate on three circles: the forward model of every planar robot with three legs.
+"""The forward model of every planar robot with three legs: three points of a plate are on three circles.
 
 Points of the plane are complex numbers. Platform point b_i lies on the circle of centre c_i and radius r_i: with
 u_i = c_i - b_i exp(i theta), the position p is at r_i from u_i. For q = p - u_1 and d_k = u_k - u_1: |q| = r_1 and
@@ -29,10 +29,11 @@ def placements(centres: Array, radii: Array, points: Array, every: bool = False)
     Args:
         centres, radii: (k, 3) complex c_i and r_i of k problems.
         points: (3,) complex b_i.
-        every: look at the stationary points of the sextic too, where symmetry makes two placements share an angle.
+        every: also use the stationary points of the sextic, for two placements that have the same angle by symmetry.
 
     Returns:
-        rows (j,): which problem; p (j,) complex and theta (j,) in (-pi, pi]. A placement may appear more than once.
+        rows (j,): the problem of each placement; p (j,) complex and theta (j,) in (-pi, pi]. A placement may appear
+        more than once.
     """
     blocks = range(0, max(len(centres), 1), _BLOCK)
     found = [_placements(centres[s : s + _BLOCK], radii[s : s + _BLOCK], points, every) for s in blocks]

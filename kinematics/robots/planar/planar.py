@@ -38,7 +38,7 @@ class PlanarGeometry(GeometryRecord):
     """Joint centres; the dimensions are assumptions of this project, as the chapter gives none.
 
     Raises:
-        InvalidGeometry: besides what any geometry refuses: the platform points coincide; two legs are one.
+        InvalidGeometry: as for any geometry; or all platform points coincide, or two legs do.
     """
 
     base_points: tuple[tuple[float, ...], ...] = length(triangle(0.5), minimum=None, doc="A_i, legs' base joints")
@@ -49,12 +49,12 @@ class PlanarGeometry(GeometryRecord):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self._coincide(self.platform_points):
-            reason = "about a common one the platform turns freely"
+            reason = "about a common point the platform could turn freely"
             raise self._invalid("platform_points", self.platform_points, f"points that do not all coincide: {reason}")
         legs = np.column_stack([*self._drives(), self.platform_points])
         if pair := twins(legs, self._size()):
-            reason = f"legs {pair[0]} and {pair[1]} share the drive too, det J_x is zero in every pose"
-            raise self._invalid("platform_points", self.platform_points, f"two points for two legs: {reason}")
+            reason = f"legs {pair[0]} and {pair[1]} have the same drive, so det J_x is zero at every pose"
+            raise self._invalid("platform_points", self.platform_points, f"a different point for each leg: {reason}")
 
     def _size(self) -> float:
         return float(max(np.abs(self.base_points).max(), np.abs(self.platform_points).max()))
@@ -73,8 +73,8 @@ class PlanarInertia(InertiaRecord):
 
     Attributes:
         drive: a prismatic drive's moving inertia as seen at its joint [kg].
-        link_mass: of each leg's link; where the link changes its length, half at each end.
-        platform_mass: in three equal particles at the B_i; the payload is a particle at the tool point.
+        link_mass: mass of each leg's link; if the link changes its length, half is at each end.
+        platform_mass: three equal particles at the B_i; the payload is a particle at the tool point.
     """
 
     drive: float = 1.0
@@ -83,7 +83,7 @@ class PlanarInertia(InertiaRecord):
 
 
 class Planar(Mechanism):
-    """Three legs in the plane z = 0; what the three robots share."""
+    """Three legs in the plane z = 0; the base of the three robots."""
 
     geometry: PlanarGeometry
     inertia: PlanarInertia
@@ -156,7 +156,7 @@ class Planar(Mechanism):
     def working_forward(self, joints: Array) -> Array:
         """(..., 3) -> (..., 3): the pose of home's assembly mode.
 
-        Far from home several modes may be joined to it: the nearest is given, and `near` says which one is meant.
+        Far from home several modes may be joined to it. The nearest is returned; `near` can choose another one.
         """
         joints = self._joints(joints)
         flat = _bounded(joints).reshape(-1, 3)

@@ -14,10 +14,10 @@ from kinematics.robots.planar.planar import Planar, PlanarGeometry, PlanarInerti
 
 @dataclass(frozen=True)
 class Planar3RPRGeometry(PlanarGeometry):
-    """With the platform a quarter turn ahead: similar triangles side by side would make home singular.
+    """The platform is turned by a quarter turn, as home would be singular with two parallel similar triangles.
 
     Raises:
-        InvalidGeometry: besides what any planar robot refuses: the base points coincide.
+        InvalidGeometry: as for any planar robot; or all base points coincide.
     """
 
     platform_points: tuple[tuple[float, ...], ...] = length(
@@ -27,7 +27,7 @@ class Planar3RPRGeometry(PlanarGeometry):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self._coincide(self.base_points):
-            reason = "about a common one the robot turns freely"
+            reason = "about a common point the robot could turn freely"
             raise self._invalid("base_points", self.base_points, f"points that do not all coincide: {reason}")
 
 

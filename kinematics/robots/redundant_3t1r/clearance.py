@@ -1,4 +1,4 @@
-"""How near the redundant 3T-1R robot's arms come to each other, in numbers and in symbols."""
+"""Distances between the arms of the redundant 3T-1R robot, in numbers and in symbols."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.mathematics import segment_distances
 
-# Arms that meet at a platform point have no distance to keep.
+# Arms that share a platform point have no distance to keep.
 _APART = tuple((i, j) for i in range(6) for j in range(i + 1, 6) if i // 2 != j // 2)
 _PARALLELOGRAMS = (2, 3)
 

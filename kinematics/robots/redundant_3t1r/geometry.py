@@ -16,9 +16,10 @@ class Redundant3T1RGeometry(GeometryRecord):
     """The optimised parameters of section V.D, in metres.
 
     Raises:
-        InvalidGeometry: also where |y_1| or |z_1 - a/2| is below 1e-4 L_1, or |y_3| below 1e-4 L_3. At 0 rails coincide
-            (y) or all arms are level at z = 0 and nothing holds the platform's height there (z_1 = a/2); near it the
-            forward model, which divides by them, errs by some 3e-15 m times the arms' length over them.
+        InvalidGeometry: as for any geometry; or |y_1| or |z_1 - a/2| is below 1e-4 L_1, or |y_3| below 1e-4 L_3. If y_1
+            or y_3 is 0, rails coincide. If z_1 = a/2, all arms are level at z = 0, and nothing holds the platform's
+            height there. The forward model divides by these numbers, and its error is about 3e-15 m times the arms'
+            length over them.
     """
 
     outer_arm_length: float = length(1.25, doc="L1, arms 1, 2, 5 and 6")
@@ -35,9 +36,11 @@ class Redundant3T1RGeometry(GeometryRecord):
         outer, middle = _LEAST_SPREAD * self.outer_arm_length, _LEAST_SPREAD * self.middle_arm_length
         for name, least in (("outer_rail_y", outer), ("middle_rail_y", middle)):
             if abs(getattr(self, name)) < least:
-                raise self._invalid(name, getattr(self, name), f"{least:g} m or more from 0, or two rails coincide")
+                raise self._invalid(
+                    name, getattr(self, name), f"{least:g} m or more from 0, so that no two rails coincide"
+                )
         if abs(self.outer_rail_z - self.platform_height / 2) < outer:
-            why = f"{outer:g} m or more from platform_height / 2, or nothing holds the height at z = 0"
+            why = f"{outer:g} m or more from platform_height / 2, as otherwise nothing holds the height at z = 0"
             raise self._invalid("outer_rail_z", self.outer_rail_z, why)
 
 

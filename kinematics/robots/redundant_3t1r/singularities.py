@@ -1,4 +1,7 @@
-"""The redundant 3T-1R robot's parallel singularities in closed form, (35)-(38) of its paper; M of arms 1, 2, 5, 6."""
+"""The redundant 3T-1R robot's parallel singularities in closed form, (35)-(38) of its paper.
+
+M is of arms 1, 2, 5, 6.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What several mechanisms have in common: rotary limbs, paired rods, limbs that coincide."""
+"""Parts that several mechanisms use: rotary limbs, paired rods, and a check for limbs that coincide."""
 
 from kinematics.robots.shared.arm_masses import ArmInertia, arms_and_rods
 from kinematics.robots.shared.coincident_limbs import ALIKE, HalvesGeometry, twins

@@ -20,7 +20,7 @@ class ArmInertia(InertiaRecord):
         drive: inertia of drive and gear at the joint.
         arm_mass, arm_centre, arm_factor: the arm's mass, its centre of mass c as a fraction of L, and its inertia about
             the joint over m c^2.
-        rod_mass: what joins an arm to the platform, one rod or two.
+        rod_mass: mass of the one or two rods between an arm and the platform.
     """
 
     drive: float = 0.045

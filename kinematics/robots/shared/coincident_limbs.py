@@ -1,4 +1,4 @@
-"""Limbs that are alike: both hold the platform along the same line, so that det J_x vanishes at every pose."""
+"""Find limbs that hold the platform along the same line, so that det J_x is zero at every pose."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ ALIKE = 1e-9  # of the robot's size: what differs by no more differs by rounding
 
 
 def twins(limbs: Array, size: float, tolerance: float = ALIKE) -> tuple[int, int] | None:
-    """The first two equal rows, counted from 1; None where all differ.
+    """The first two equal rows, counted from 1; None if all rows differ.
 
     Args:
-        limbs: (m, k) all that makes a limb hold the platform as it does, in units of `size`.
-        size: rows are equal where no number differs by more than `tolerance` times this.
+        limbs: (m, k) all numbers that decide how a limb holds the platform, in units of `size`.
+        size: rows are equal if no number differs by more than `tolerance` times this.
     """
     alike = np.abs(limbs[:, None] - limbs).max(axis=-1) <= tolerance * size
     first, second = np.nonzero(np.triu(alike, 1))
@@ -31,7 +31,7 @@ class HalvesGeometry(GeometryRecord):
     With l_1 x l_2 or l_3 x l_4 zero, so is det J_x, a component of (l_1 x l_2) x (l_3 x l_4).
 
     Raises:
-        InvalidGeometry: besides what any geometry refuses: both limbs of a half have the same azimuth.
+        InvalidGeometry: as for any geometry; or both limbs of a half have the same azimuth.
     """
 
     def __post_init__(self) -> None:
@@ -40,5 +40,7 @@ class HalvesGeometry(GeometryRecord):
         directions = np.stack([np.cos(azimuths), np.sin(azimuths)], axis=-1)
         for half in (0, 2):
             if twins(directions[half : half + 2], 1.0):
-                reason = f"limbs {half + 1} and {half + 2} are one, det J_x is zero in every pose"
-                raise self._invalid("azimuths", azimuths, f"two directions a half, modulo 2 pi: {reason}")
+                reason = f"limbs {half + 1} and {half + 2} coincide, so det J_x is zero at every pose"
+                raise self._invalid(
+                    "azimuths", azimuths, f"two different directions for each half, modulo 2 pi: {reason}"
+                )

@@ -1,8 +1,8 @@
-"""The rod-level view: a limb of two parallel rods holds an orientation only as long as J_int is regular.
+"""A model of single rods: a limb of two parallel rods holds an orientation only as long as J_int is regular.
 
-Each rod's length gives one equation between the actuators and all freedoms of the bodies it carries, tilts included:
-J_l q' = J_r v. Combining the rows (sums and differences of a limb's two rods) and the columns makes it block
-triangular, and the lower right block tells the internal singularities. Method and names: Krut et al. 2006, (47)-(58).
+Each rod's length gives one equation between the actuators and all freedoms of the bodies that it carries, including
+tilts: J_l q' = J_r v. Sums and differences of the rows of a limb's two rods, and of columns, make it block triangular.
+The lower right block shows the internal singularities. Method and names: Krut et al. 2006, (47)-(58).
 """
 
 from __future__ import annotations

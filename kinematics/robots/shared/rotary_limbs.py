@@ -1,4 +1,4 @@
-"""Limbs of a rotary arm and a rod: what Heli4, Delta, Par4, Hexa and 3-RRR share.
+"""Limbs of a rotary arm and a rod, as in Heli4, Delta, Par4, Hexa and 3-RRR.
 
 The arm turns about a fixed axis and carries A = P + L (zero cos q + quarter sin q); the rod holds |A - B| = l. Squaring
 gives M cos q + N sin q = G, expressions (10)-(12) of Krut et al. 2006, with two roots, the elbow on either side of the
@@ -26,7 +26,7 @@ from kinematics.machine import (
 )
 from kinematics.model import Mechanism, Mode
 
-_LEVEL = 1e-9  # of the robot's size: a platform point no further from the drive's level is level with it
+_LEVEL = 1e-9  # times the robot's size: a platform point that is closer to the drive's level counts as level with it
 
 
 class Limbs(NamedTuple):
@@ -82,7 +82,7 @@ class Limbs(NamedTuple):
         return ca.horzcat(*(ca.cross(self.zero[:, i], self.quarter[:, i]) for i in range(self.zero.shape[1])))
 
     def reach(self, platform: ca.SX) -> ca.SX:
-        """(m,) how much longer or shorter each rod could be before B_i left the arm's circle [m]."""
+        """(m,) how much longer or shorter each rod could be and still reach from B_i to the arm's circle [m]."""
         to_actuator = self.actuators - platform
         across, outward, along = (ca.sum1(to_actuator * d).T for d in (self.axes(), self.quarter, self.zero))
         distance = ca.sqrt(outward**2 + along**2)
@@ -110,7 +110,7 @@ def central_limbs(g: SimpleNamespace) -> Limbs:
 
 
 def height_in_reach(base_radius: float, platform_radius: float, arm: float, rod: float) -> float:
-    """How far below its drives' plane a platform on the axis is in the middle of its reach [m]."""
+    """The depth below the drives' plane where a platform on the axis is in the middle of its reach [m]."""
     aside = base_radius - platform_radius
     lowest, highest = ((rod + side * arm) ** 2 - aside**2 for side in (1, -1))
     return (math.sqrt(max(lowest, 0.0)) + math.sqrt(max(highest, 0.0))) / 2
@@ -132,7 +132,7 @@ class ArmRanges(RodRanges):
 
 
 class RotaryLimbs(Mechanism):
-    """A mechanism whose m limbs are all of this kind: it states where they are and which points they hold."""
+    """A mechanism whose m limbs are all of this kind. It gives the place of its limbs and the points that they hold."""
 
     inertia: Any
 
@@ -154,7 +154,8 @@ class RotaryLimbs(Mechanism):
     def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:
         """Ball joints whose studs lie along the arm's axis, on the arm and on the platform.
 
-        The FlexPicker's, whose forearms Heli4 has: a rod swings freely in the arm's plane and leans out of it.
+        They are like those of the FlexPicker, whose forearms Heli4 has: a rod swings freely in the arm's plane and
+        leans out of it.
         """
         limbs, turned = self.limbs(g), self.platform_axes(pose, g)
         rods, lengths = self.rods(pose, joints, g), ca.repmat(limbs.rod, joints.numel() // limbs.rod.numel(), 1)

@@ -97,7 +97,7 @@ def test_impossible_drives_are_named(field, value):
 def test_other_impossible_inertias_are_named():
     with pytest.raises(InvalidValue, match="DriveTrain gear_ratio: found 0"):
         DriveTrain(gear_ratio=0.0)
-    with pytest.raises(InvalidValue, match=r"DriveTrain coulomb: .* one number or 4, one an actuator"):
+    with pytest.raises(InvalidValue, match=r"DriveTrain coulomb: .* one number, or 4: one for each actuator"):
         with_drives(Heli4, coulomb=(1.0, 2.0, 3.0))
     with pytest.raises(InvalidValue, match=r"Heli4Inertia rod_middle: found 1.1"):
         Heli4Inertia(rod_middle=1.1)

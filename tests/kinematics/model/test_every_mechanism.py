@@ -64,7 +64,7 @@ def test_what_is_no_array_of_real_numbers_is_refused(robot: Mechanism, bad: obje
 @ALL
 def test_poses_and_joints_that_do_not_go_together_are_refused(robot: Mechanism) -> None:
     poses = np.stack([home(robot)] * 2)
-    with pytest.raises(InvalidValue, match="go together"):
+    with pytest.raises(InvalidValue, match="can be broadcast"):
         robot.closure_residual(poses, robot.inverse(np.stack([home(robot)] * 3)))
 
 

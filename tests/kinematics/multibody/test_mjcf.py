@@ -165,7 +165,7 @@ def test_friction_of_the_drives_is_mujocos(kind):
 
 
 def test_what_cannot_be_exported_is_named():
-    with pytest.raises(InvalidValue, match=r"half 1, which moves otherwise; expected .* the hook `link_tree`"):
+    with pytest.raises(InvalidValue, match=r"half 1, which moves in another way; expected .* the hook `link_tree`"):
         mjcf(Par4(), Par4().home)
     with pytest.raises(InvalidValue, match="no link that q1 moves"):
         mjcf(Planar3RPR(), Planar3RPR().home)

@@ -72,7 +72,7 @@ def fake_mechanism() -> None:
             ["--law", "free"],
             "[trajectory.path]",
             "trajectory.path",
-            "path of the free law: found another one; expected an Adept cycle",
+            "path of the free law: found another path; expected an Adept cycle",
             2,
         ),
         (FAR, [], "[trajectory.cycle]", "trajectory.cycle", "reach margin of limb", 2),
@@ -104,7 +104,7 @@ def fake_mechanism() -> None:
             "rad; expected from 1.5 to 2.2",
             1,
         ),
-        (FILES, [], "[trajectory]", "drive.increments", "found nothing; expected the encoder's", 2),
+        (FILES, [], "[trajectory]", "drive.increments", "found nothing; expected the increments", 2),
     ],
 )
 def test_what_is_refused_is_told_at_its_key(

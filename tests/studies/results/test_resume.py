@@ -103,4 +103,4 @@ def test_no_stage_takes_longer_than_its_seconds_and_what_stays_open_is_undecided
     (tmp_path / "study.toml").write_text(DESIGN)
     ended = linkwright("optimise", tmp_path, "--seconds", "1e-3", "--json")
     assert ended.returncode == 1
-    assert "the budget of 0.001 s was used up" in json.loads(ended.stdout)["error"]
+    assert "the time of 0.001 s ended" in json.loads(ended.stdout)["error"]

@@ -22,7 +22,7 @@ def limits(law: Law, **others: object) -> Limits:
 def test_a_weight_beyond_the_torque_at_an_end_is_refused_with_its_torque(
     robot: Heli4, path: AdeptCycle, law: Law
 ) -> None:
-    words = r"the weight alone, at rest, asks q1 for a torque of -6.\d+ N m; expected from -2 to 2"
+    words = r"holding the weight at rest needs a torque at q1 of -6.\d+ N m; expected from -2 to 2"
     with pytest.raises(PathBeyondLimit, match=words) as caught:
         law(robot, path, limits(law, torque=2.0), 1.0)
     assert (caught.value.limit, caught.value.at) == ("torque", path.length)
@@ -51,7 +51,9 @@ STEEP = RoundedPath(
 
 @pytest.mark.parametrize("law", LAWS)
 def test_where_the_weight_blocks_the_way_pose_waypoint_joint_and_torque_are_named(robot: Heli4, law: Law) -> None:
-    with pytest.raises(PathBeyondLimit, match="nearest to waypoint 2: the weight alone, at rest, asks q1") as caught:
+    with pytest.raises(
+        PathBeyondLimit, match="nearest to waypoint 2: holding the weight at rest needs a torque at q1"
+    ) as caught:
         law(robot, STEEP, limits(law, torque=6.351), 1.0)
     assert (caught.value.waypoint, caught.value.joint, caught.value.limit) == (2, "q1", "torque")
     pose, rest = np.array(caught.value.pose), np.zeros(4)

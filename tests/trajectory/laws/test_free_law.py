@@ -52,7 +52,7 @@ def test_it_is_faster_than_any_motion_on_the_cycle_s_own_path(
 def test_the_tool_keeps_clear_of_the_arch_and_a_shrunken_motion_does_not(path: AdeptCycle, motion: PoseSpline) -> None:
     _require_clear(Arch.of(path), motion)
     low = replace(motion, pose=motion.pose - [0.0, 0.0, 5 * TOLERANCE * path.blend, 0.0])
-    with pytest.raises(TimingFailed, match="cuts the arch"):
+    with pytest.raises(TimingFailed, match="enters the clearance arch"):
         _require_clear(Arch.of(path), low)
 
 

@@ -135,5 +135,5 @@ def test_where_drives_cannot_hold_the_weight_a_path_is_passed_at_speed() -> None
     found = jerk_limited(robot, path, limits, 1.0)
     assert 0.995 * without < found.duration < 1.01 * without
     assert verify(robot, found, limits, 1.0).ok
-    with pytest.raises(PathBeyondLimit, match="the weight alone"):
+    with pytest.raises(PathBeyondLimit, match="holding the weight"):
         jerk_limited(robot, path, replace(limits, torque=1.001 * float(max(weights[0], weights[-1]))), 1.0)

@@ -66,7 +66,7 @@ def test_a_range_holds_for_every_joint_and_several_for_their_own() -> None:
     assert (low.tolist(), high.tolist()) == ([-1.0, 0.0], [2.0, 3.0])
     assert limits.as_dict()["position"] == [[-1.0, 2.0], [0.0, 3.0]]
     assert Limits(speed=20).ranges(2) is None
-    with pytest.raises(InvalidValue, match="3, one a joint"):
+    with pytest.raises(InvalidValue, match="3: one for each joint"):
         limits.ranges(3)
 
 

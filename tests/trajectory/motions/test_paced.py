@@ -88,14 +88,14 @@ def test_a_pace_that_hides_a_knot_of_the_motion_is_refused() -> None:
 @pytest.mark.parametrize("tau", [[-0.1, 0.2], [0.8, 1.1]])
 def test_a_pace_that_leaves_the_motion_is_refused(tau: list[float]) -> None:
     motion = spline(np.array([0.0, 1.0]), ALONG_X[None])
-    with pytest.raises(InvalidValue, match=r"rising ones in \[0, 1\] s"):
+    with pytest.raises(InvalidValue, match=r"rising knots in \[0, 1\] s"):
         PacedMotion(motion, TimeLaw.constant_acceleration("beyond", np.array(tau), np.array([1.0, 0.0])))
 
 
 def test_a_pace_that_turns_back_is_refused() -> None:
     """tau' = t^2 - t, of which a law sees the ends alone."""
     values = ([0.0, 1.0], [0.5, 0.5 - 1 / 6], [0.0, 0.0], [-1.0], [2.0], [0.0])
-    with pytest.raises(InvalidValue, match="rising ones"):
+    with pytest.raises(InvalidValue, match="rising knots"):
         PacedMotion(spline(np.array([0.0, 1.0]), ALONG_X[None]), TimeLaw("back", *map(np.array, values)))
 
 

@@ -1,4 +1,4 @@
-"""Lower bounds of the time that any law takes."""
+"""Lower bounds of the time of any law."""
 
 from trajectory.laws.bounds.least_time import lower_bound
 

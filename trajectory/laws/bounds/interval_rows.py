@@ -4,8 +4,8 @@ With u = s'' and x = s'^2 each limit of torque, joint acceleration or tool accel
 a, b and c are functions of s. The rate w = b - a' / 2, a dash for the derivative by s, is what remains of b when a row
 is averaged over an interval: a u = a x' / 2 = (a x)' / 2 - a' x / 2.
 
-Over an interval a coefficient f is f(m) +- r max |f'|, m the middle and r half of it: an interval kernel, rounded
-outward, bounds f', from bounds of the path's derivatives.
+Over an interval with middle m and half length r, a coefficient f is within f(m) +- r max |f'|. Interval arithmetic,
+rounded outward, bounds f' from bounds of the path's derivatives.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ from kinematics import (
 from trajectory.limits import IntervalRows, Limits, OverIntervals, SlopesOverIntervals
 from trajectory.paths import Path, places
 
-_DIRECTIONS = 16  # in which the tool's acceleration is bounded, over half a turn
+_DIRECTIONS = 16  # directions over half a turn in which the tool's acceleration is bounded
 _MOVING = 0.5  # the length of a tangent is 1, or 0 where the tool turns in place
-_SLACK = 1e-12  # relative and absolute: far more than what evaluation in double arithmetic is off by
+_SLACK = 1e-12  # relative and absolute: far more than the error of evaluation in double arithmetic
 
 
 def interval_rows(
@@ -81,7 +81,7 @@ def interval_rows(
 def _with_friction(
     robot: Mechanism, constant: tuple[Array, Array], first: tuple[Array, Array], highest: Array
 ) -> tuple[Array, Array]:
-    """The constant part of the torque and its radius, with a friction anywhere between rest and the highest speed."""
+    """The constant part of the torque and its radius, with any friction between rest and the highest speed."""
     drives, count = robot.inertia.drive_train, first[0].shape[1]
     coulomb, viscous = (drives.of_actuators(name, count) for name in ("coulomb", "viscous"))
     if not (coulomb.any() or viscous.any()):

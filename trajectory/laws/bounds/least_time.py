@@ -1,15 +1,15 @@
 """A lower bound of the time that any motion along a path takes within its limits of speed, acceleration and torque.
 
-No law is looked for: what every law must satisfy, averaged over intervals of s, is relaxed, and the largest x = s'^2
-that the relaxed conditions admit is found, backward from rest at the end and then forward from rest at the start. Each
-step is a linear program in x at both ends of an interval. With x~ the mean of x over an interval of length d, a row
-|a u + b x + c| <= 1 (see `interval_rows`) gives
+This finds no law. It takes conditions that every law must satisfy, averages them over intervals of s and relaxes them.
+Then it finds the largest x = s'^2 that they allow, backward from rest at the end and then forward from rest at the
+start. Each step is a linear program in x at both ends of an interval. With x~ the mean of x over an interval of length
+d, a row |a u + b x + c| <= 1 (see `interval_rows`) gives
 
     (a_1 x_1 - a_0 x_0) / (2 d) + w x~ + c <= 1,  w and c anywhere in their bounds, and likewise below,
 
 and x~ differs from (x_0 + x_1) / 2 by at most (U - L) d / 4, where L <= u <= U are the least and the largest u that the
 rows allow in the interval. The motion takes at least the integral of 1 / sqrt of the largest x. Limits of jerk and root
-mean square are left out: they can only make a motion slower. Redundant actuators share the load with the least norm.
+mean square are left out, as they can only make a motion slower. Redundant actuators share the load by the least norm.
 """
 
 from __future__ import annotations
@@ -25,23 +25,23 @@ from trajectory.laws.bounds.interval_rows import interval_rows
 from trajectory.limits import IntervalRows, Limits
 from trajectory.paths import Path, require_poses_of
 
-_ROUNDING = 1e-9  # relative: far more than the arithmetic of the linear programs is off by
+_ROUNDING = 1e-9  # relative: far more than the rounding error of the linear programs
 _LINE = 1e-12  # relative to a row's or a bound's size
-_MOST = 1e9  # 1/s^2: lengths of the path and their squares, of which no motion asks for more
+_MOST = 1e9  # 1/s^2: a bound of u and x over the path's length and its square, above that of any motion
 
 
 def lower_bound(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = 4000) -> float:
-    """No motion from rest to rest along the path, within the limits, is faster [s].
+    """A time that every motion from rest to rest along the path, within the limits, needs at least [s].
 
     Args:
         robot: any mechanism with the path's kind of pose.
-        path: without a jump of its tangent, within reach and regular.
-        limits: of joints and tool; those are used that give rows over intervals.
+        path: a path without a jump of its tangent, within reach and without singular poses.
+        limits: limits of joints and tool; only those with rows over intervals are used.
         payload: mass at the tool [kg].
-        intervals: of s, the finer the closer the bound.
+        intervals: number of intervals of s. More intervals give a closer bound.
 
     Raises:
-        InvalidValue: another kind of pose.
+        InvalidValue: the robot has another kind of pose.
         TimingFailed: no motion along the path keeps the limits.
     """
     require_poses_of(robot, path)
@@ -61,7 +61,7 @@ def lower_bound(robot: Mechanism, path: Path, limits: Limits, payload: float, in
 
 
 def _steepest(rows: IntervalRows, highest: Array, limit: float) -> Array:
-    """(2, k) the most that u and -u can be in each interval [m/s^2]; 0 where there is no such u."""
+    """(2, k) the largest values of u and -u in each interval [m/s^2]; 0 if there is no such u."""
     by_x = np.hstack([rows.b - rows.b_radius, -rows.b - rows.b_radius])
     rest = np.hstack([1.0 - rows.c + rows.c_radius, 1.0 + rows.c + rows.c_radius])
     found = np.empty((2, highest.size))
@@ -83,7 +83,7 @@ def _averaged(rows: IntervalRows, lengths: Array, steepest: Array) -> tuple[Arra
 
 
 def _usable(first: Array, second: Array, rest: Array) -> tuple[Array, Array, Array]:
-    """The rows; 0 <= 1 in place of those that are unbounded."""
+    """The rows, with 0 <= 1 instead of unbounded ones."""
     good = np.isfinite(first) & np.isfinite(second) & np.isfinite(rest)
     return np.where(good, first, 0.0), np.where(good, second, 0.0), np.where(good, rest, 1.0)
 
@@ -107,7 +107,7 @@ def _largest_each(g, h, r, most_x, most_y, found):  # type: ignore[no-untyped-de
 
 @numba.njit(cache=True, error_model="numpy")
 def _profile(g, h, r, highest, x):  # type: ignore[no-untyped-def]
-    """Backward and forward; fills x and returns -1, or the interval that nothing passes."""
+    """Backward, then forward. Fills x and returns -1, or the interval that no motion passes."""
     last = x.size - 1
     x[last] = 0.0
     for k in range(last - 1, -1, -1):
@@ -124,9 +124,9 @@ def _profile(g, h, r, highest, x):  # type: ignore[no-untyped-def]
 
 @numba.njit(cache=True, error_model="numpy")
 def _largest_x(g, h, r, most_x, most_y):  # type: ignore[no-untyped-def]
-    """max x with g x + h y <= r (rows,), 0 <= x <= most_x, 0 <= y <= most_y; -1 where there is none.
+    """max x with g x + h y <= r (rows,), 0 <= x <= most_x, 0 <= y <= most_y; -1 if there is none.
 
-    Row by row: where the best point so far breaks one, the new best lies on its line.
+    Rows are added one by one. If the best point so far breaks the new row, the new best point is on that row's line.
     """
     x, y = most_x, most_y
     for i in range(g.size):

@@ -1,9 +1,9 @@
 """Nonlinear programs over equal intervals of time, each with the same constraints, for IPOPT.
 
 The unknowns are the pose and its first three derivatives w_k at the start of every interval, the state at the end, and
-the duration T; derivatives are by t / T, so that the intervals join by constant linear equations. Each constraint is
-one function of (w_k, T), and a sum over the intervals of another. Jacobian and Hessian are then those of one interval,
-written out once and laid block by block: far smaller than what differentiating the whole program gives.
+the duration T. Derivatives are by t / T, so that intervals are joined by constant linear equations. Constraints are
+functions of (w_k, T), and sums over the intervals of another function. Jacobian and Hessian consist of equal blocks,
+one for each interval. So one block is written out, which is far smaller than the derivatives of the whole program.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from kinematics import CORES, Array
 
 @dataclass(frozen=True, eq=False)
 class IntervalConstraints:
-    """What holds in each interval, as expressions in the symbols `start` (4 n,) and `duration`.
+    """The constraints of each interval, as expressions in the symbols `start` (4 n,) and `duration`.
 
     Attributes:
-        start: (4 n,) pose and its derivatives by t / T where the interval starts.
+        start: (4 n,) pose and its derivatives by t / T at the start of the interval.
         duration: T [s].
-        local: (c,) between `low` and `high` (c,) in each interval.
-        summed: (e,) whose sum over the intervals is at most 1.
+        local: (c,) expressions that must be between `low` and `high` (c,) in each interval.
+        summed: (e,) expressions whose sum over the intervals must be at most 1.
     """
 
     start: ca.SX
@@ -39,7 +39,7 @@ class IntervalConstraints:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What IPOPT said: `found` holds only where `status` is "Solve_Succeeded"; derivatives are by t / T."""
+    """The answer of IPOPT. It is a solution only if `status` is "Solve_Succeeded". Derivatives are by t / T."""
 
     status: str
     start: Array  # (k, 4 n)
@@ -47,7 +47,7 @@ class Answer:
 
 
 class IntervalProgram:
-    """The fastest motion over equal intervals; built once, solved from several starts."""
+    """The program of the fastest motion over equal intervals. It is built once and solved from several starts."""
 
     def __init__(self, constraints: IntervalConstraints, intervals: int) -> None:
         self._constraints, self._intervals = constraints, intervals
@@ -86,10 +86,10 @@ class IntervalProgram:
         """The best motion from a start.
 
         Args:
-            guess: (k, 4 n) at the start of each interval; the first row's state is kept.
-            end: (3 n,) state at the end, kept.
+            guess: (k, 4 n) the state at the start of each interval; that of the first row is fixed.
+            end: (3 n,) the state at the end, which is fixed.
             low, high: (n,) bounds of the pose.
-            duration: of the guess [s].
+            duration: duration of the guess [s].
         """
         n = self._size // 4
         first = np.concatenate([guess.ravel(), end, [duration]])
@@ -106,7 +106,7 @@ class IntervalProgram:
         return Answer(status, x[: self._intervals * self._size].reshape(self._intervals, self._size), float(x[-1]))
 
     def _joins(self, unknowns: int) -> ca.DM:
-        """(3 n k, unknowns) what the state at the end of each interval differs by from the next one's."""
+        """(3 n k, unknowns) the difference of the state at the end of each interval from the next one's start."""
         n, count, h = self._size // 4, self._intervals, 1.0 / self._intervals
         one = np.array([[1.0, h, h**2 / 2, h**3 / 6], [0.0, 1.0, h, h**2 / 2], [0.0, 0.0, 1.0, h]])
         row, column, value = list[Array](), list[Array](), list[Array]()

@@ -1,8 +1,9 @@
-"""The law `free`: path and timing together, the tool free outside the clearance arch, all limits kept, jerk among them.
+"""The law `free`: path and timing together. The tool is free outside the clearance arch. All limits are kept, with
+jerk.
 
-The pose's third derivative is constant in each of equal intervals of time; IPOPT finds it together with the duration
-(`interval_nlp`). Limits are kept at samples of each interval, jerk on both sides of every knot; what is left between
-the samples is for `repair`. The start is the time-optimal law on the cycle's own path.
+The pose's third derivative is constant in each of equal intervals of time. IPOPT finds it together with the duration
+(`interval_nlp`). Limits are kept at samples of each interval, and jerk on both sides of every knot. `repair` corrects a
+small excess between the samples. The search starts from the time-optimal law on the cycle's own path.
 """
 
 from __future__ import annotations
@@ -23,14 +24,14 @@ from trajectory.motions import PoseSpline
 from trajectory.paths import TOLERANCE, Arch, Path, PoseBounds, bezier_points, places, require_poses_of
 
 _AT_INSTANTS = (Place, Cap, Linear, Disc)
-_AT = (0.0, 0.5)  # where in an interval speed, acceleration, torque are kept
-_ARCH_AT = 480  # instants, about, at which the tool stays outside the arch: a tenth of a blend apart at most
-_PROOF = 100_000  # parts of the motion, over each of which the arch is proved to be kept
-_FINER = 2  # times as many intervals, where they are too wide
-_CLOSER = 8  # instants of an interval at which the limits are looked at again
-_NEARLY = 5e-3  # of a limit, that the repair mends
-_SLOWER = (1.1, 1.15, 1.3)  # durations of the guess over the time-optimal law, until one leads to an answer
-_ROOM = 0.25  # of the path's extent, by which the pose may leave the path's box
+_AT = (0.0, 0.5)  # places in an interval where the limits of speed, acceleration and torque are required
+_ARCH_AT = 480  # about so many instants where the tool stays outside the arch: at most a tenth of a blend apart
+_PROOF = 100_000  # parts of the motion; over each of them the arch is proved to be kept
+_FINER = 2  # factor for more intervals if they are too wide
+_CLOSER = 8  # instants of an interval where the limits are measured again
+_NEARLY = 5e-3  # excess over a limit, relative to it, that the repair corrects
+_SLOWER = (1.1, 1.15, 1.3)  # durations of the guess over the time-optimal law; they are tried in turn
+_ROOM = 0.25  # times the path's extent: the pose may leave the path's box by this
 
 
 def free_motion(
@@ -41,18 +42,18 @@ def free_motion(
     intervals: int = 60,
     within: PoseBounds | None = None,
 ) -> PoseSpline:
-    """The fastest jerk-limited motion from a cycle's one end to the other, outside its arch.
+    """The fastest jerk-limited motion from one end of a cycle to the other, outside its arch.
 
     Args:
         robot: any mechanism with the path's kind of pose.
-        path: an Adept cycle or its way back; its ends, its arch and the guess come from it.
-        limits: of joints and tool, with jerk; all are kept.
+        path: an Adept cycle or its way back. It gives the ends, the arch and the guess.
+        limits: limits of joints and tool, with jerk; all are kept.
         payload: mass at the tool [kg].
-        intervals: of equal time, to start with.
-        within: what every pose stays in, at every instant; anywhere about the path when None.
+        intervals: number of equal intervals of time at the start.
+        within: bounds of every pose at every instant; None allows poses near the path.
 
     Raises:
-        InvalidValue: another kind of path or pose, or no limit of jerk.
+        InvalidValue: the path or the pose is of another kind, or there is no jerk limit.
         TimingFailed: the solver did not converge.
     """
     require_poses_of(robot, path)
@@ -73,10 +74,10 @@ def _on_intervals(
     intervals: int,
     within: PoseBounds | None,
 ) -> PoseSpline:
-    """The fastest motion on so many intervals.
+    """The fastest motion on `intervals` intervals.
 
     Raises:
-        TimingFailed: the solver did not converge, or the tool or a limit asks for closer intervals.
+        TimingFailed: the solver did not converge, or the arch or a limit needs shorter intervals.
     """
     program = _program(robot, arch, limits, payload, intervals, within)
     guess, end, duration = _guess(robot, path, limits, payload, intervals)
@@ -99,12 +100,12 @@ def _on_intervals(
     motion = PoseSpline("free", times, p, v, a, j, ends)
     _require_clear(arch, motion)
     if (used := _between(robot, limits, payload, motion)) > 1.0 + _NEARLY:
-        raise TimingFailed("free", asked, f"between its instants it uses {used:.4g} of a limit")
+        raise TimingFailed("free", asked, f"between its instants the motion uses {used:.4g} times a limit")
     return motion
 
 
 def _between(robot: Mechanism, limits: Limits, payload: float, motion: PoseSpline) -> float:
-    """The most that a motion uses of a limit at instants closer than those at which it is kept."""
+    """The largest use of a limit, over the limit, at closer instants than those where it is required."""
     _, at = motion.within(np.linspace(0.0, 1.0, _CLOSER + 1))
     rates = [rate.reshape(-1, rate.shape[-1]).T for rate in (at.pose, at.velocity, at.acceleration)]
     limited, _, _ = _limited(robot, limits, payload)
@@ -112,18 +113,18 @@ def _between(robot: Mechanism, limits: Limits, payload: float, motion: PoseSplin
 
 
 def _require_clear(arch: Arch, motion: PoseSpline) -> None:
-    """Raise TimingFailed where the tool may cut the arch between the samples."""
+    """Raise TimingFailed if the tool may enter the arch between the samples."""
     parts = math.ceil(_PROOF / (motion.times.size - 1))
     half = np.diff(motion.times)[:, None, None] / (2 * parts)
     _, at = motion.within((np.arange(parts) + 0.5) / parts)
     away = half * (np.abs(at.velocity) + half * (np.abs(at.acceleration) + half * np.abs(at.jerk)))
     if not arch.kept_clear(at.pose[..., :3].reshape(-1, 3), away[..., :3].reshape(-1, 3)):
-        asked = {"intervals": motion.times.size - 1, "tolerance of the arch, of the blend": TOLERANCE}
-        raise TimingFailed("free", asked, "the tool cuts the arch between the samples")
+        asked = {"intervals": motion.times.size - 1, "tolerance of the arch over the blend": TOLERANCE}
+        raise TimingFailed("free", asked, "the tool enters the clearance arch between the samples")
 
 
 def _guess(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int) -> tuple[Array, Array, float]:
-    """From toppra's law: the intervals' starts (k, 4 n) and the end (3 n,), by t / T, and its duration."""
+    """A guess from toppra's law: the intervals' starts (k, 4 n) and the end (3 n,), by t / T, and the duration."""
     plain = limits.without(*LAWS["toppra"].refuses, Place)
     law = time_optimal(robot, path, plain, payload, 1000)
     motion = law.at(np.linspace(0.0, law.duration, intervals + 1))
@@ -187,7 +188,7 @@ def _within(start: ca.SX, t: float, n: int) -> list[ca.SX]:
 
 @lru_cache(maxsize=4)
 def _limited(robot: Mechanism, limits: Limits, payload: float) -> tuple[ca.Function, ca.Function, ca.Function]:
-    """What is kept between -1 and 1 at a pose, velocity and acceleration; the joints' jerk; squares of the torque."""
+    """Three functions: values to keep between -1 and 1 at an instant; the joints' jerk; squares of the torque."""
     model = robot.model()
     rates = velocity, acceleration, jerk = [
         ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration", "jerk")

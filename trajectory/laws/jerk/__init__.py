@@ -1,4 +1,4 @@
-"""The law `jerk`: the fastest on a fixed path that keeps all limits, jerk among them."""
+"""The law `jerk`: the fastest law on a fixed path that keeps all limits, with the jerk limit."""
 
 from trajectory.laws.jerk.law import jerk_limited
 

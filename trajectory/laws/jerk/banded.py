@@ -16,7 +16,7 @@ LEAD = 3  # rows before the first one
 
 @compiled
 def factorise(band: Array) -> bool:
-    """The factor in the matrix's place; False where the matrix is not positive definite."""
+    """Replace the matrix by its factor; returns False if the matrix is not positive definite."""
     band[:LEAD] = 0.0
     band[:LEAD, 3] = 1.0
     for i in range(LEAD, band.shape[0]):

@@ -1,4 +1,4 @@
-"""What a motion uses of its rows between the stations at which a search keeps them."""
+"""How much of its rows a motion uses between the stations where a search keeps them."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
-"""The decorator of the functions that numba compiles here, and keeps on disk until a file of this room changes.
+"""The decorator of the functions that numba compiles here. They are kept on disk until a file of this room changes.
 
-numba asks only the function's own file whether it changed, although a compiled function contains those that it calls.
+numba checks only the function's own file for changes, although a compiled function contains the functions that it
+calls.
 """
 
 from __future__ import annotations

@@ -1,11 +1,12 @@
-"""The interior point: the squared rate x of least time under `Rows`, in numba, without a general sparse solver.
+"""An interior point method for the squared rate x of least time under `Rows`, in numba, without a general sparse
+solver.
 
-Unknowns are x and w = x' / 2 at the knots of u, a cubic between; the time is the integral of 1 / sqrt(x). Every iterate
-keeps every row strictly, so each is a motion; mean squares are met at the end alone. A row that is not linear is met by
-its tangent: that of the jerk, |linear| <= 1 / sqrt(x), and those with sqrt(x) ahead of it are kept by what keeps their
-tangents, so that a step needs no search; the others are convex. Their curvature is left out where it is negative.
-Neighbours alone are coupled: the Newton matrix has three diagonals below its own, but for the mean square torque, which
-adds one rank a joint.
+Unknowns are x and w = x' / 2 at the knots of u, with a cubic between. The time is the integral of 1 / sqrt(x). Every
+iterate keeps every row strictly, so each is a motion. Only the mean squares are met at the end alone. A row that is not
+linear is replaced by its tangent. For the jerk, |linear| <= 1 / sqrt(x), and for rows with a factor sqrt(x), the
+tangent is stricter than the row, so that a step needs no search. The other rows are convex. Negative curvature is left
+out. Only neighbours are coupled, so the Newton matrix has three diagonals below its own. The mean square torque adds
+one rank for each joint.
 """
 
 from __future__ import annotations
@@ -23,9 +24,9 @@ from trajectory.laws.jerk.newton_step import Newton, assemble, room_for, solve_s
 from trajectory.laws.jerk.stations import STATIONS, all_bases, gradients_of, means_of, row_count, slacks_of, states_of
 
 SOLVED, OUTSIDE, SINGULAR, STUCK, SLOW = 0, 1, 2, 3, 4
-_TO_EDGE = 0.95  # share of the way to the nearest row that a step goes
-_MEAN_SLACK = 1e-2  # in units of the time: what a mean square has left at first, at least
-_BACK = 0.7  # of a step that broke a row
+_TO_EDGE = 0.95  # share of the distance to the nearest row that a step may go
+_MEAN_SLACK = 1e-2  # in units of the time: least slack of a mean square at the start
+_BACK = 0.7  # factor that shortens a step that broke a row
 _TRIES = 40
 
 
@@ -144,18 +145,18 @@ def descend(
     """Descend from a motion that keeps the rows strictly.
 
     Args:
-        kept: what it keeps.
-        y: (2 n + 2,) x and w at the knots; the answer comes in its place.
-        dual, mean_dual: at least these, of a problem that is close; 0 is none. The answer's come in their place.
+        kept: the rows and their bounds.
+        y: (2 n + 2,) x and w at the knots. The answer replaces them.
+        dual, mean_dual: least values of the duals, from a similar problem, or 0. The answer's duals replace them.
         barrier: product of each row's slack and dual at the start.
-        tolerance: of the time, relative.
-        most_steps: before it gives up.
-        loose: what is added to all that the rows are kept to.
-        price: of that, in units of the time; then it is lowered too, and the search ends where none of it is left.
-            With 0 it stays.
+        tolerance: relative tolerance of the time.
+        most_steps: the most steps.
+        loose: a number that is added to the bounds of all rows.
+        price: the price of `loose`, in units of the time. With a price, `loose` is lowered too, and the search ends
+            when it is 0. Without (0), `loose` stays.
 
     Returns:
-        How it ended, SOLVED or another, after how many steps, and the time.
+        The end (SOLVED or another), the number of steps, and the time.
     """
     room, equations = _room_for(kept, loose), room_for(y.size, mean_dual.size)
     states_of(room.bases, y, room.states)

@@ -1,4 +1,4 @@
-"""The fastest law on a fixed path that keeps all limits, jerk among them: s''' piecewise linear, s'' continuous."""
+"""The fastest law on a fixed path that keeps all limits, with jerk: s''' is piecewise linear, s'' continuous."""
 
 from __future__ import annotations
 
@@ -31,21 +31,21 @@ _CHECKED = 2000  # intervals of arc length between which the joints' positions a
 def jerk_limited(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int = INTERVALS) -> TimedPath:
     """The fastest law from rest to rest, with zero s'' at both ends.
 
-    It may rest in very short corners too, where that is found to be faster or nothing else is found; and, as a last
-    resort, at equal distances.
+    It may also rest in very short corners, if that is faster or if no other law is found. If still none is found, it
+    rests at equal distances.
 
     Args:
         robot: any mechanism with the path's kind of pose.
-        path: smooth to its third derivative, without a cusp.
-        limits: of joints and tool; all are kept but the position, which the path alone decides.
+        path: a path that is smooth to its third derivative, without a cusp.
+        limits: limits of joints and tool. All are kept except the position, which only the path decides.
         payload: mass at the tool [kg].
-        intervals: to start with, at least 20; the law takes as many as its time needs to stand.
+        intervals: number of intervals at the start, at least 20. More are used until the time stops changing.
 
     Raises:
         InvalidValue: too few intervals, no jerk limit, an impossible payload, or another kind of pose.
         RoughPath, UnreachablePose: as `time_optimal`.
-        PathBeyondLimit: a position beyond its range, or a weight beyond the torque at an end or, where no motion was
-            found that passes at speed, in between.
+        PathBeyondLimit: a position is outside its range; or the weight needs more torque than a drive has, at an end,
+            or in between where no motion at speed was found.
         TimingFailed: no law was found within the limits.
     """
     if intervals < LEAST_INTERVALS:

@@ -1,4 +1,4 @@
-"""The knots of the jerk law: the path's own among them, the others where the motion spends its time."""
+"""The knots of the jerk law: those of the path, and others where the motion is slow or exceeds its rows."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from trajectory.laws.jerk.limit_rows import PARTS, progress_at
 from trajectory.laws.jerk.motion import SquaredRate
 from trajectory.paths import Path
 
-LEAST_IN_PIECE = 6  # intervals between two of the path's knots: so many follow a corner's coefficients
-_BY_TIME = 0.8  # share of the knots that stand at equal times; the others at equal u
-_BY_EXCESS = 0.2  # share of all the knots that stand where rows are exceeded between the stations
-_SHORTEST = 1e-10  # of u: closer knots of the path are one
+LEAST_IN_PIECE = 6  # least intervals between two knots of the path; a corner needs so many
+_BY_TIME = 0.8  # share of the knots at equal times; the others are at equal u
+_BY_EXCESS = 0.2  # share of all knots that are placed where rows are exceeded between the stations
+_SHORTEST = 1e-10  # in u: closer knots of the path count as one
 
 
 def piece_edges(path: Path) -> Array:
@@ -33,8 +33,8 @@ def first_mesh(edges: Array, intervals: int) -> Array:
 def next_mesh(edges: Array, motion: SquaredRate, over: Array, intervals: int) -> Array:
     """About so many intervals of u for a motion that is known.
 
-    What an interval exceeds between its stations falls with the square of its size: knots in proportion to its root
-    make it even.
+    The excess between stations falls with the square of an interval's size. So knots with a density proportional to its
+    square root make the excess even.
 
     Args:
         edges: of the pieces.

@@ -1,8 +1,8 @@
 """From a slow motion to the fastest one: searches on finer and finer knots, each from the motion before it.
 
-A search keeps the rows at its stations. What its answer exceeds between them tightens the rows around it, and the
-search goes on; how much time that costs says whether the knots are close enough, and if not there are twice as many.
-Each answer is slowed down until it keeps the rows of the path itself between the stations; the fastest one is taken.
+A search keeps the rows at its stations. If its answer exceeds a row between stations, the rows around it are tightened,
+and the search continues. If this costs too much time, the knots are too far apart, and their number is doubled. Each
+answer is slowed down until it keeps the rows of the path itself between the stations. The fastest answer is returned.
 """
 
 from __future__ import annotations

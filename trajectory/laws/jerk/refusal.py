@@ -1,4 +1,4 @@
-"""Why no motion along a path keeps its limits: somewhere the weight, or weight and friction, is beyond a drive."""
+"""Why no motion along a path keeps its limits: somewhere a drive is too weak for the weight, or weight and friction."""
 
 from __future__ import annotations
 
@@ -16,11 +16,12 @@ _LOOKED_AT = 2001  # arc lengths
 
 
 def refuse(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int) -> NoReturn:
-    """Raise for a search that ended without a motion.
+    """Raise the error for a search that ended without a motion.
 
     Raises:
-        PathBeyondLimit: the weight alone is beyond a drive somewhere, and no motion was found that passes there.
-        TimingFailed: anything else; what weight and friction, or the weight's RMS torque, lack is said.
+        PathBeyondLimit: somewhere the weight alone needs more torque than a drive has, and no motion was found that
+            passes there.
+        TimingFailed: any other case; the message says how much weight and friction, or the weight's RMS torque, need.
     """
     s = np.linspace(0.0, path.length, _LOOKED_AT)
     require_held(robot, path, limits, payload, s)
@@ -41,8 +42,8 @@ def refuse(robot: Mechanism, path: Path, limits: Limits, payload: float, interva
 
 
 def _lacking(robot: Mechanism, s: Array, poses: Array, torque: Array, most: Array, what: str) -> str:
-    """Where a drive lacks most, in words."""
+    """The place where a drive lacks the most torque, in words."""
     k, joint = np.unravel_index(int((np.abs(torque) / most).argmax()), torque.shape)
     pose, unit = ", ".join(f"{v:.6g}" for v in poses[k]), {"rad": "N m", "m": "N"}[robot.actuator_units[joint]]
     asked = f"{torque[k, joint]:.6g} {unit} of {robot.actuator_names[joint]}, which has {most[joint]:.6g} {unit}"
-    return f"at s = {s[k]:.6g} m, pose ({pose}), the {what} asks {asked}"
+    return f"at s = {s[k]:.6g} m, pose ({pose}), the {what} needs {asked}"

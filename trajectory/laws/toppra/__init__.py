@@ -1,4 +1,4 @@
-"""The law `toppra`: time-optimal on a fixed path, without a limit of jerk."""
+"""The law `toppra`: time-optimal on a fixed path, without a jerk limit."""
 
 from trajectory.laws.toppra.law import time_optimal
 

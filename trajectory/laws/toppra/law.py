@@ -1,12 +1,13 @@
-"""The time-optimal law on a fixed path by reachability analysis, as toppra has it: s'' is constant between gridpoints.
+"""The time-optimal law on a fixed path by reachability analysis, as in toppra: s'' is constant between gridpoints.
 
 The rows of `path_rows` are linear in u = s'' and x = s'^2, and x is linear in s between gridpoints. They are kept at
-both ends of each interval (the interpolation scheme). The grid is the law's own affair: the path's knots are in it, and
-an interval is halved where its middle exceeds a limit, or leaves time unused, until what is left is small. `verify`
-measures it between the gridpoints, and shares nothing with this.
+both ends of each interval (the interpolation scheme). The law finds its own grid. The path's knots are in the grid. An
+interval is halved if its middle exceeds a limit or wastes time, until little is left. `verify` measures the law between
+the gridpoints, and shares nothing with this code.
 
-Viscous friction is linear in sqrt(x), so this law refuses it, and so it does by name what else it cannot keep, such as
-a jerk limit under its bang-bang s''.
+Viscous friction is linear in sqrt(x), so this law refuses it. It also refuses limits that it cannot keep, such as a
+jerk
+limit: its s'' steps from one extreme to the other.
 """
 
 from __future__ import annotations
@@ -43,16 +44,17 @@ def time_optimal(robot: Mechanism, path: Path, limits: Limits, payload: float, i
     Args:
         robot: any mechanism with the path's kind of pose.
         path: smooth, without a stop inside.
-        limits: of joints and tool; without jerk, speed-torque line and RMS torque.
+        limits: limits of joints and tool, without jerk, speed-torque line and RMS torque.
         payload: mass at the tool [kg].
-        intervals: about so many to start from; the law refines them where it has to.
+        intervals: about so many intervals at the start; the law adds more if needed.
 
     Raises:
-        InvalidValue: a limit that it cannot keep, viscous friction where torque is limited, a negative payload, no
+        InvalidValue: a limit that it cannot keep, viscous friction with limited torque, a negative payload, no
             interval, or another kind of pose.
         RoughPath: the path has a stop, a cusp or a kink inside.
-        UnreachablePose: a limb cannot reach a pose of the path; the limb and its margin are named.
-        PathBeyondLimit: a position beyond its range, or a weight beyond the torque where it must be held.
+        UnreachablePose: a limb cannot reach a pose of the path; the message names the limb and its margin.
+        PathBeyondLimit: a position is outside its range, or the weight needs more torque than a drive has where the
+            robot must hold it.
         TimingFailed: there is no law within the limits.
     """
     _require_kept(robot, limits, payload, intervals)
@@ -102,16 +104,16 @@ def _first_grid(path: Path, intervals: int) -> Array:
 
 
 def _profile(rows: PathRows, asked: dict[str, object]) -> tuple[Array, int]:
-    """(k,) the fastest x on a grid [m^2/s^2], and the interval that nothing passes or -1."""
+    """(k,) the fastest x on a grid [m^2/s^2], and the interval that no motion passes, or -1."""
     if not all(np.isfinite(v).all() for v in rows):
-        raise TimingFailed("toppra", asked, "the path's coefficients are not finite: a singular pose on it")
+        raise TimingFailed("toppra", asked, "the path's coefficients are not finite: the path has a singular pose")
     x = np.empty(rows.s.size)
     rows_ = (rows.a, rows.b, rows.c, rows.friction)
     return x, fastest_profile(np.diff(rows.s), rows_, rows.highest, x)
 
 
 def _refuse(robot: Mechanism, path: Path, limits: Limits, payload: float, s: Array, asked: dict[str, object]) -> None:
-    """Raise for what blocks the way first after s[0]: where the robot can hold still, it can move on too."""
+    """Raise for the first place after s[0] that no motion passes. Where the robot can hold still, it can also go on."""
     for some in np.array_split(s, max(1, s.size // _TOGETHER)):
         require_held(robot, path, limits, payload, some)
     pose = ", ".join(f"{v:.6g}" for v in path.evaluate(s[0], 0)[0])

@@ -1,4 +1,4 @@
-"""What a limit is: its fields, what it asks of a pace, and how a stretch of time brings a motion within it."""
+"""The base of all limits: fields, constraints on the pace, and the stretch of time that keeps a limit."""
 
 from trajectory.limits.model.constraints import (
     Along,

@@ -1,7 +1,8 @@
-"""What a limit asks of a pace on a way, in a few kinds: the laws know these, and not the limits.
+"""The few kinds of constraints that limits put on the pace along a way. The laws know these kinds, and not the limits.
 
-A way p is known by its derivatives by a parameter, such as the arc length: a dash stands for them. The pace is how fast
-the parameter grows; u is its second and z sqrt(x) its third derivative by time, and x the square of its first.
+A way p has a parameter, such as the arc length; a dash is the derivative by it. The pace is the rate of the parameter
+in
+time: x is the square of this rate, u the second derivative of the parameter by time, and z sqrt(x) the third.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ class TorqueAlong(NamedTuple):
 
     Attributes:
         inertia, square, viscous, constant: as above.
-        friction: the Coulomb friction that a law keeps apart from the constant; how it enters, that law knows.
-        whole: the constant with all friction, as the way goes.
+        friction: the Coulomb friction that a law keeps apart from the constant; the law decides how to use it.
+        whole: the constant with all friction, in the direction of the way.
     """
 
     inertia: Array
@@ -36,9 +37,9 @@ class Along:
     """A way at some of its points.
 
     Attributes:
-        joints: of the actuators by the parameter, (..., m) each.
+        joints: derivatives of the actuators by the parameter, (..., m) each.
         tool: the first two derivatives of the tool point by the parameter, (..., 2 or 3) each.
-        split: finds `torque`; it is called only where a limit asks for it.
+        split: computes `torque`; it is called only if a limit needs it.
     """
 
     joints: JointMotion
@@ -53,12 +54,12 @@ class Along:
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Decided by where the way is, whatever the pace."""
+    """A constraint that only the place of the way decides, at any pace."""
 
 
 @dataclass(frozen=True, eq=False)
 class Cap:
-    """x <= most, (...,); infinite where nothing moves."""
+    """x <= most, (...,); `most` is infinite where nothing moves."""
 
     most: Array
 

@@ -1,4 +1,4 @@
-"""The fields of `Limits`, each with its unit, its words and what it may hold."""
+"""The fields of `Limits`, each with its unit, its words and its allowed values."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ class LimitField(ABC):
     """One field.
 
     Attributes:
-        name: in the record, and the key in a study.
-        words: what it is, for people.
-        expected: what it may hold, for people.
-        unit: SI; of a joint that turns, or that slides.
-        required: whether every robot has one.
+        name: the name in the record, and the key in a study.
+        words: a description for people.
+        expected: the allowed values, in words.
+        unit: SI unit, for joints that turn and joints that slide.
+        required: whether it must be set.
     """
 
     name: str
@@ -36,7 +36,7 @@ class LimitField(ABC):
         """The value as the record keeps it.
 
         Raises:
-            InvalidValue: anything else than `expected`.
+            InvalidValue: the value is not as `expected`.
         """
 
 
@@ -72,7 +72,7 @@ class RangeField(LimitField):
         except (ValueError, TypeError):
             raise InvalidField("Limits", self.name, value, "low < high, or one such pair a joint") from None
         if not (np.isfinite(pairs).all() and (pairs[..., 0] < pairs[..., 1]).all()):
-            raise InvalidField("Limits", self.name, value, "finite, low < high")
+            raise InvalidField("Limits", self.name, value, "finite numbers, low < high")
         return tuple(tuple(row) for row in pairs.tolist()) if pairs.ndim == 2 else tuple(pairs.tolist())
 
 
@@ -80,5 +80,5 @@ def _positive(name: str, value: Any) -> tuple[float, ...]:
     items = np.atleast_1d(np.asarray(value, dtype=object)).tolist()
     numbers = [v for v in items if isinstance(v, int | float | np.integer | np.floating) and not isinstance(v, bool)]
     if not items or len(numbers) < len(items) or not all(np.isfinite(v) and v > 0 for v in numbers):
-        raise InvalidField("Limits", name, value, "finite and > 0")
+        raise InvalidField("Limits", name, value, "a finite number > 0")
     return tuple(float(v) for v in numbers)

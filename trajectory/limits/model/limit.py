@@ -1,7 +1,7 @@
-"""A limit: one object that knows its fields, what a motion uses of it, what it asks of a pace, and its words.
+"""A limit: one object with its fields, the use that a motion makes of it, its constraint on the pace, and its words.
 
-What verifies a motion asks `use` (or `quantity` and `excess`) alone; the laws ask the rest. The two share nothing but
-the limit's own numbers.
+The verification of a motion calls only `use` (or `quantity` and `excess`). The laws call the rest. The two parts share
+nothing but the limit's own numbers.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ NO_SLACK = Motion(PoseMotion(*np.zeros(4)), JointMotion(*np.zeros(4)), np.zeros(
 class Use(NamedTuple):
     """One quantity at each sample, (..., m), or (..., 1) for the tool; SI units.
 
-    `limit` and `ratio` are None where nothing limits the quantity; a ratio over 1 breaks the limit.
+    `limit` and `ratio` are None if nothing limits the quantity. A ratio above 1 breaks the limit.
     """
 
     value: Array
@@ -44,17 +44,17 @@ class SymbolicMotion(NamedTuple):
 
 
 class Limit(ABC):
-    """What a motion may not exceed. One file holds one kind; a limit that is not set has None in its fields.
+    """A bound that a motion must keep. One file holds one kind. A limit that is not set has None in its fields.
 
     Attributes:
-        name: of the quantity; tables, files and errors call it so.
-        fields: of `Limits`, all of them set or none.
-        both: what is asked for where only some of the fields are set.
-        kind: of the constraint that it is to a pace on a way.
-        exact: whether a motion within the limit keeps its constraint; false where that asks for more than the limit.
-        pace_power: of the pace, with which the quantity grows, about; 0 where no pace changes it.
+        name: the name of the quantity in tables, files and errors.
+        fields: its fields of `Limits`; all of them are set, or none.
+        both: the words of the error if only some of the fields are set.
+        kind: the kind of its constraint on the pace along a way.
+        exact: whether every motion within the limit keeps its constraint; false if the constraint is stricter.
+        pace_power: the power of the pace with which the quantity grows, about; 0 if no pace changes it.
         of_torque: whether the torque is part of it.
-        not_for_moves: why a single move from pose to pose does not keep it; empty where it does.
+        not_for_moves: why a single move from pose to pose does not keep it; empty if it does.
     """
 
     name: ClassVar[str]
@@ -67,92 +67,93 @@ class Limit(ABC):
     not_for_moves: ClassVar[str] = ""
 
     def is_set(self, limits: LimitValues) -> bool:
-        """Whether a motion has to keep it."""
+        """Whether the limit is set."""
         return getattr(limits, self.fields[0].name) is not None
 
     def least_stretch(self, peak: float, motion: Sampled, limits: LimitValues) -> float:  # noqa: ARG002
         """The least factor, at least 1, by which stretching the time brings a motion within the limit.
 
         Args:
-            peak: what the motion uses, over the limit.
-            motion: what it does.
-            limits: of which this one is set.
+            peak: the largest use of the motion, over the limit.
+            motion: samples of the motion.
+            limits: the limits, of which this one is set.
 
         Raises:
-            LimitsExceeded: no factor does.
+            LimitsExceeded: there is no such factor.
         """
         result: float = max(1.0, peak ** (1 / self.pace_power))
         return result
 
     def holding_torque(self, limits: LimitValues, count: int) -> Array | None:  # noqa: ARG002
-        """(count,) what it leaves to the drives at rest [N m or N]; None where it limits no torque."""
+        """(count,) the torque that it leaves to the drives at rest [N m or N]; None if it limits no torque."""
         return None
 
     @abstractmethod
     def constraint(self, along: Along, limits: LimitValues) -> Constraint:
-        """What it asks of a pace on a way, of its `kind`."""
+        """Its constraint, of its `kind`, on the pace along a way."""
 
     def highest_over_intervals(self, slopes: SlopesOverIntervals, limits: LimitValues) -> Array | None:  # noqa: ARG002
-        """(k,) the largest x in intervals of a path [m^2/s^2]; None where it bounds none by itself.
+        """(k,) the largest x in intervals of a path [m^2/s^2]; None if it does not bound x directly.
 
-        Bounds of the least time leave out what gives neither this nor `rows_over_intervals`, which is safe.
+        A limit that gives neither this nor `rows_over_intervals` is left out of bounds of the least time, which is
+        safe.
         """
         return None
 
     def rows_over_intervals(self, over: OverIntervals, limits: LimitValues) -> IntervalRows | None:  # noqa: ARG002
-        """What it asks in intervals of a path."""
+        """Its rows over intervals of a path, if any."""
         return None
 
     @abstractmethod
     def symbolic(self, motion: SymbolicMotion, limits: LimitValues) -> ca.SX:
-        """What it keeps between -1 and 1; of a mean square the quantity over its limit."""
+        """The expression that must stay between -1 and 1; for a mean square, the quantity over its limit."""
 
 
 class InstantLimit(Limit):
     """A limit that holds at every instant.
 
     Attributes:
-        jumps: whether the quantity is without bound where the acceleration jumps.
+        jumps: whether the quantity is infinite where the acceleration jumps.
     """
 
     jumps: ClassVar[bool] = False
 
     @abstractmethod
     def use(self, robot: Mechanism, motion: Motion, limits: LimitValues, slack: Motion) -> Use | None:
-        """What a motion uses of it, sample by sample; None where there is nothing to tell without a limit.
+        """How much of it a motion uses, sample by sample; None if the quantity means nothing without a limit.
 
         Args:
-            robot: of the motion.
+            robot: the robot that moves.
             motion: (..., m) samples.
-            limits: in which this one may be set or not.
-            slack: how far each sample may be from what it is; the most that it may use is then found.
+            limits: the limits; this one may be set or not.
+            slack: bounds of the error of each sample; the result is then the largest possible use.
         """
 
 
 class MeanSquareLimit(Limit):
     """A limit of the root mean square of a quantity over a way from rest to rest."""
 
-    not_for_moves = "it is a mean over a cycle, which a single move is none of"
+    not_for_moves = "it is a mean over a cycle, and a single move is not a cycle"
 
     @abstractmethod
     def quantity(self, motion: Motion) -> Array:
-        """(..., m) whose mean square is limited."""
+        """(..., m) the quantity whose mean square is limited."""
 
     @abstractmethod
     def excess(self, slack: Motion, mean_torque: Array) -> tuple[Array, Array]:
-        """By how much the size of the quantity may exceed that in the middle of a part of the motion, (k, m) each.
+        """How much larger the quantity can be in a part of the motion than in the part's middle, (k, m) each.
 
         Args:
-            slack: how far the motion may be from that in the middle.
-            mean_torque: (k, m) by how much the mean of |torque| may exceed |torque| in the middle.
+            slack: bounds of the motion's distance from that in the middle.
+            mean_torque: (k, m) bounds of the mean of |torque| minus |torque| in the middle.
 
         Returns:
-            At most, and in the mean.
+            The bound at every instant, and the bound of the mean.
         """
 
     @abstractmethod
     def most(self, limits: LimitValues, count: int) -> Array | None:
-        """(count,) of the root mean square; None where it is not set."""
+        """(count,) the limit of the root mean square; None if it is not set."""
 
 
 @np.errstate(over="ignore")  # a bound that is too wide proves nothing

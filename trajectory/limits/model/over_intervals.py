@@ -1,7 +1,7 @@
-"""What a limit allows in intervals of a path, whatever the pace does inside: for lower bounds of the time.
+"""Rows that a limit gives over intervals of a path, for any pace inside; they are used in lower bounds of the time.
 
-With u = s'' and x = s'^2, s the arc length. Each coefficient is a value in the middle of an interval, and a radius by
-which it may differ inside.
+Here s is the arc length, u = s'' and x = s'^2. Each coefficient has a value in the middle of an interval, and a radius
+by which it may differ inside.
 """
 
 from __future__ import annotations

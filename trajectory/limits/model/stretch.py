@@ -1,4 +1,4 @@
-"""A motion whose time is stretched until its limits are kept: what each sample of it allows."""
+"""The stretch of time that each sample of a motion needs to keep a limit."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ class Sampled:
     """A motion at samples that cover it.
 
     Attributes:
-        robot: of the motion.
+        robot: the robot that moves.
         tool: (k, j, n) the pose and its time derivatives.
         payload: mass at the tool [kg].
-        mean: of values (k, j, ...) at the samples, over the time.
+        mean: function that gives the mean over time of values (k, j, ...) at the samples.
     """
 
     robot: Mechanism
@@ -34,7 +34,7 @@ class Sampled:
 
     @cached_property
     def torque(self) -> ByRate:
-        """By the rate at which the same way is travelled."""
+        """The torque as a function of the rate of the same motion."""
         return torque_by_rate(self.robot, self.payload, self.tool.pose, self.tool.velocity, self.tool.acceleration)
 
     @cached_property
@@ -47,7 +47,7 @@ def stretch_of_sum(name: str, torque: ByRate, limit: Array, slope: Array | float
     """The least factor f of time with |torque| + slope / f <= limit at each sample, the torque that at r = 1 / f.
 
     Raises:
-        LimitsExceeded: what the torque keeps at rest is beyond the limit already.
+        LimitsExceeded: the torque at rest is already above the limit.
     """
     sign = np.sign(sum(torque))
     rest = limit - sign * torque.constant
@@ -64,7 +64,7 @@ def stretch_of_mean_square(name: str, torque: ByRate, limit: float, mean: Callab
     """The least factor of time with which the mean square of one drive's torque (k, j), a quartic in r, keeps a limit.
 
     Raises:
-        LimitsExceeded: what the torque keeps at rest is beyond the limit already.
+        LimitsExceeded: the torque at rest is already above the limit.
     """
     c, b, a = (x[..., None] for x in torque)
     quartic = mean(np.concatenate([a * a, 2 * a * b, b * b + 2 * a * c, 2 * b * c, c * c], axis=-1))

@@ -1,4 +1,4 @@
-"""The numbers of a record of limits, as a limit asks for its own."""
+"""Access to the values of the fields of `Limits`."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from kinematics import Array, InvalidField
 
 
 class LimitValues:
-    """What `Limits` is to a limit: values by the names of fields."""
+    """The part of `Limits` that a limit uses: values by the names of fields."""
 
     def of_joints(self, name: str, count: int) -> Array | None:
-        """(count,) a joint limit, None where there is none.
+        """(count,) a joint limit; None if it is not set.
 
         Args:
-            name: any field but those of the tool and the position.
+            name: any field except those of the tool and the position.
             count: number of joints of the robot.
 
         Raises:
@@ -24,7 +24,7 @@ class LimitValues:
         if value is None:
             return None
         if isinstance(value, tuple) and len(value) != count:
-            raise InvalidField("Limits", name, value, f"one number or {count}, one a joint")
+            raise InvalidField("Limits", name, value, f"one number, or {count}: one for each joint")
         return np.broadcast_to(np.asarray(value, dtype=float), (count,)).copy()
 
     def set_of_joints(self, name: str, count: int) -> Array:
@@ -40,7 +40,7 @@ class LimitValues:
             return None
         pairs = np.atleast_2d(np.array(value, dtype=float))
         if len(pairs) not in (1, count):
-            raise InvalidField("Limits", name, value, f"one range or {count}, one a joint")
+            raise InvalidField("Limits", name, value, f"one range, or {count}: one for each joint")
         low, high = np.broadcast_to(pairs, (count, 2)).T
         return low, high
 

@@ -94,8 +94,8 @@ def refused(kind, field, reason, **change):
 
 def test_base_points_that_coincide_are_refused_where_the_robot_would_turn_freely():
     one = ((0.3, 0.1), (0.3, 0.1 + ROUNDING), (0.3, 0.1))
-    refused(Planar3RPR, "base_points", "turns freely", base_points=one)
-    refused(Planar3RPR, "platform_points", "turns freely", platform_points=one)
+    refused(Planar3RPR, "base_points", "could turn freely", base_points=one)
+    refused(Planar3RPR, "platform_points", "could turn freely", platform_points=one)
     robot = Planar3PRR(Planar3PRR.Geometry(base_points=((0.0, 0.0),) * 3, rail_angles=(0.3, 2.4, 4.5)))
     assert robot.margin("det_J_x", np.array([0.05, 0.02, 0.4])) > 1e-3  # rails from one point hold the platform
 
@@ -130,7 +130,7 @@ def test_two_equal_limbs_of_a_hexa_are_refused():
 def test_equal_azimuths_of_one_half_are_refused_and_of_two_halves_are_not(kind):
     a, b, turn = 0.4, 2.1, 2 * np.pi
     for azimuths in [(a,) * 4, (a, a + turn + ROUNDING, b, b + 1), (b, b + 1, a, a - turn)]:
-        refused(kind, "azimuths", "are one", azimuths=azimuths)
+        refused(kind, "azimuths", "coincide", azimuths=azimuths)
     robot = kind(kind.Geometry(azimuths=(a, b, a, b)))
     poses = np.array(kind().home) + [[0.03, 0.02, 0.01, t] for t in (0.5, -0.8)]
     assert (robot.margin("det_J_x", poses) > 1e-6).all()
@@ -138,7 +138,7 @@ def test_equal_azimuths_of_one_half_are_refused_and_of_two_halves_are_not(kind):
 
 def test_equal_azimuths_of_a_delta_are_refused():
     for azimuths in [(0.5, 0.5 + ROUNDING, 3.0), (0.5, 3.0, 0.5 + 2 * np.pi)]:
-        refused(Delta, "azimuths", "no two the same", azimuths=azimuths)
+        refused(Delta, "azimuths", "three different directions", azimuths=azimuths)
 
 
 @pytest.mark.filterwarnings("error")

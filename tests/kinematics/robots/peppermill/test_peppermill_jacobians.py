@@ -147,7 +147,7 @@ def test_singularities_never_answer_for_joints_of_another_pose():
     robot = Peppermill()
     pose, joints = angles(0.4, 1.3)
     for call in (links, singularity_kinds):
-        with pytest.raises(InvalidValue, match="belong to the pose"):
+        with pytest.raises(InvalidValue, match="close the loop at the pose"):
             call(robot, pose + np.array([0, 0, 1e-3, 0]), joints)
     with pytest.raises(UnreachablePose):
         singularity_kinds(robot, np.array([0, 0, 3.0, 0]))
