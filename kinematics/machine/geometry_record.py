@@ -1,4 +1,4 @@
-"""Geometry records: one frozen dataclass serves the prototype's numbers and the symbols of the model."""
+"""Geometry records: one frozen dataclass holds the prototype's numbers and defines the symbols of the model."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from kinematics.machine.geometry_fields import FieldKind, Vector
 class GeometryRecord:
     """Base of every mechanism's `Geometry`: named numbers, tuples of numbers, or tuples of rows of numbers.
 
-    In a vector, a field of rows lies row by row.
+    In a vector, a field of rows is stored row by row.
 
     Raises:
         InvalidGeometry: a value is not finite, has the wrong number of items, or is not a possible length.
@@ -34,7 +34,7 @@ class GeometryRecord:
             if array is None or array.shape != wanted:
                 raise self._invalid(f.name, given, words)
             if not np.isfinite(array).all():
-                raise self._invalid(f.name, given, "finite values")
+                raise self._invalid(f.name, given, "finite numbers")
             kind = kind_of(f)
             if not kind.allows(array, array):
                 raise self._invalid(f.name, given, kind.expected)
@@ -46,12 +46,12 @@ class GeometryRecord:
 
     @classmethod
     def sizes(cls) -> dict[str, int]:
-        """How many numbers each field holds, in the order of `vector`."""
+        """The number of numbers in each field, in the order of `vector`."""
         return {f.name: math.prod(_shape(f)) for f in fields(cls)}
 
     @classmethod
     def symbols(cls) -> tuple[ca.SX, SimpleNamespace]:
-        """The symbol vector (k,) and the same symbols under the fields' names."""
+        """The symbol vector (k,), and the same symbols by the fields' names."""
         named = {name: ca.SX.sym(name, size) for name, size in cls.sizes().items()}
         return ca.vertcat(*named.values()), SimpleNamespace(**named)
 
@@ -61,7 +61,7 @@ class GeometryRecord:
 
     @classmethod
     def from_vector(cls, values: Vector) -> Self:
-        """Inverse of `vector`."""
+        """The geometry with these numbers (k,); the inverse of `vector`."""
         items: dict[str, Any] = {}
         start = 0
         for f in fields(cls):
@@ -75,23 +75,23 @@ class GeometryRecord:
         return replace(self, **changes)
 
     def as_dict(self) -> dict[str, Any]:
-        """Field names to plain numbers, lists or lists of rows, for files."""
+        """Plain numbers, lists or lists of rows by the fields' names, for files."""
         return {f.name: np.asarray(getattr(self, f.name)).tolist() for f in fields(self)}
 
     @classmethod
     def descriptions(cls) -> dict[str, str]:
-        """What each field means, by its name."""
+        """The description of each field, by its name."""
         return {f.name: f.metadata["doc"] for f in fields(cls)}
 
     @property
     def size(self) -> float:
-        """The largest of its lengths [m]: what makes a distance large or small for this robot."""
+        """The largest of its lengths [m]. Tolerances scale with it."""
         lengths = [np.abs(getattr(self, f.name)).max() for f in fields(self) if kind_of(f).dimension == "length"]
         return float(max(lengths))
 
     @property
     def digest(self) -> str:
-        """SHA-256 of the numbers, to tell which geometry a file was made for."""
+        """SHA-256 of the numbers. Files state it, so that it is known which geometry they are for."""
         return hashlib.sha256(json.dumps(self.as_dict(), sort_keys=True).encode()).hexdigest()
 
 
@@ -106,7 +106,7 @@ def _shape(f: Field[Any]) -> tuple[int, ...]:
 
 
 def numbers_of(given: object) -> Vector | None:
-    """As an array of floats; None where any of it is not a number, such as text that only looks like one."""
+    """The values as an array of floats; None if one of them is not a number (text of a number is not one)."""
     try:
         array = np.asarray(given)
     except ValueError:  # ragged
@@ -115,5 +115,5 @@ def numbers_of(given: object) -> Vector | None:
 
 
 def frozen(array: Vector) -> Any:
-    """A number, a tuple, or a tuple of tuples: hashable."""
+    """The array as a number, a tuple, or a tuple of tuples, which can be hashed."""
     return tuple(frozen(row) for row in array) if array.ndim else float(array)

@@ -1,4 +1,4 @@
-"""Margins: a number at each pose, the larger the better. Each is one object, which knows all that is asked of it."""
+"""Margins: a number at each pose; a larger number is better. Each margin is one object with all its data."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Measure:
-    """What the indices are measured with, in numbers or in symbols.
+    """The data that the indices are measured with, in numbers or in symbols.
 
     Attributes:
         fvi: the fields of `FviBounds`.
@@ -34,11 +34,11 @@ class Measure:
 
 @dataclass(frozen=True)
 class ClaimSymbols:
-    """Symbols of a claim's own numbers, which the geometry's join; all are fixed before anything is evaluated.
+    """Symbols of a claim's own numbers. Like those of the geometry they get values before anything is evaluated.
 
     Attributes:
-        bound: what the margin must reach.
-        measure: what the margin is measured with.
+        bound: the bound that the margin must reach.
+        measure: the data that the margin is measured with.
     """
 
     bound: ca.SX
@@ -58,16 +58,16 @@ class ClaimSymbols:
 
     @staticmethod
     def values(at_least: float, fvi: FviBounds, length: float) -> list[float]:
-        """What the symbols stand for."""
+        """The values of the symbols."""
         return [at_least, fvi.joint_speed, fvi.joint_effort, fvi.speed, fvi.force, length]
 
 
 @dataclass(frozen=True, eq=False)
 class ToShow(Value):
-    """Expressions (c,) of which is shown whether they are at least 0; `scaling` holds symbols of any numbers.
+    """Expressions (c,) that must be shown to be at least 0; `scaling` holds symbols that may have any values.
 
-    `matrix` is what these come from, in the middle of each box, by `chosen`: (k, r, c) plain values -> (k, rows,
-    columns) of `scaling`. None where no scaling stands in the expressions.
+    The function `chosen` computes these values from `matrix` in the middle of each box: (k, r, c) plain values ->
+    (k, rows, columns) of `scaling`. Both are None if the expressions have no scaling.
     """
 
     expressions: ca.SX
@@ -80,13 +80,13 @@ class Margin(ABC):
     """A number at each pose: the smallest of its components. A mechanism lists its own; one file holds one kind.
 
     Attributes:
-        name: what studies and files call it.
-        unit: of its numbers; empty where it has none. Radians or metres, by the joint, are `rad or m`.
-        words: what it is, for people.
-        holds_on_paths: a path is travelled only where it is above 0.
-        of_jacobians: it follows from J_x and |J_q| alone, so that a mirror that keeps these keeps it.
-        beyond_reach: it has a value where a limb cannot reach, too.
-        singularity: the kind of singularity that it is 0 at; empty where it tells none.
+        name: its name in studies and files.
+        unit: the unit of its numbers; empty if there is none. `rad or m` depends on the joint.
+        words: a description for people.
+        holds_on_paths: whether it must be above 0 at every pose of a path.
+        of_jacobians: whether it depends only on J_x and |J_q|, so that a mirror that keeps these keeps it.
+        beyond_reach: whether it has a value even where a limb cannot reach.
+        singularity: the kind of singularity where it is 0; empty if it shows none.
     """
 
     name: ClassVar[str]
@@ -99,10 +99,10 @@ class Margin(ABC):
 
     @abstractmethod
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:
-        """(k,) in the symbols `pose` and `geometry` of the robot's model, each to be at least the bound."""
+        """(k,) expressions in the symbols `pose` and `geometry` of the model. Each must be at least the bound."""
 
     def limbs(self, robot: Mechanism) -> list[int] | None:  # noqa: ARG002
-        """(k,) the limb of each component, counted from 1; None where they belong to no limb."""
+        """(k,) the limb of each component, counted from 1; None if components do not belong to limbs."""
         return None
 
     def smallest(self, robot: Mechanism, measure: Measure) -> ca.SX:
@@ -110,25 +110,27 @@ class Margin(ABC):
         return smallest(self.components(robot, measure))
 
     def to_refute(self, robot: Mechanism, claim: ClaimSymbols) -> ToShow:
-        """Expressions of which none is below 0 where the margin has a value and reaches the bound, for any scaling."""
+        """Expressions that are all at least 0, for any scaling, where the margin has a value and reaches the bound."""
         return ToShow(self.components(robot, claim.measure) - claim.bound, ca.SX(0, 0))
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
-        """What implies that the margin reaches the bound everywhere in a connected region.
+        """Expressions that, if all are at least 0, imply that the margin reaches the bound in a connected region.
 
-        Interval bounds of a quotient of norms are wide, those of the determinants behind it far tighter: margins of
-        that kind replace this. Here a minimum is taken apart, and a modulus replaced by the function with its sign:
-
-        |u| >= c for a continuous u on a connected region: s u - c >= 0 with one sign s = +-1 implies it for every c,
-        and for c > 0 no other way exists. The sign is taken at a pose of the region; a wrong one only fails to prove.
+        Interval bounds of a quotient of norms are wide. Bounds of its determinants are much closer, so margins of that
+        kind override this method. Here a minimum is split into its parts, and a modulus is replaced by the function
+        with its sign. Let u be continuous on a connected region. If s u - c >= 0 with one sign s = +-1, then |u| >= c.
+        For c > 0 there is no other way. The sign is that at one pose of the region. With a wrong sign the proof fails,
+        but nothing false is proved.
 
         Args:
-            inside: (n,) a pose of the region, which gives the signs.
+            inside: (n,) a pose of the region; it decides the signs.
             positive: whether the bound is above 0.
         """
         components = self.components(robot, claim.measure)
         parts = [part for i in range(components.numel()) for part in sides(components[i])]
-        parts = [part for part in parts if not (part.is_constant() and float(part) == np.inf)]  # nothing limits these
+        parts = [
+            part for part in parts if not (part.is_constant() and float(part) == np.inf)
+        ]  # a part at infinity always holds
         if positive:
             parts = [signed(robot, p.dep(0), inside) if p.op() == ca.OP_FABS else p for p in parts]
         return ToShow(ca.vertcat(*parts) - claim.bound if parts else ca.SX(0, 1), ca.SX(0, 0))
@@ -142,5 +144,5 @@ def signed(robot: Mechanism, expression: ca.SX, inside: Array) -> ca.SX:
 
 
 def by_name(*margins: Margin) -> dict[str, Margin]:
-    """What a mechanism's `margins` holds."""
+    """The margins by name, for a mechanism's `margins`."""
     return {margin.name: margin for margin in margins}

@@ -1,4 +1,4 @@
-"""All that follows from a mechanism's definition, over arrays of poses."""
+"""Everything that is derived from a mechanism's definition, for arrays of poses."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _SLICE = 8192  # poses whose matrices are in memory at once
 
 
 class Mechanism(Definition):
-    """A parallel mechanism with n freedoms and m actuated joints, one a limb.
+    """A parallel mechanism with n freedoms and m actuated joints, one for each limb.
 
     Every public method takes poses (..., n) or joints (..., m) with any leading shape.
     """
@@ -49,13 +49,13 @@ class Mechanism(Definition):
 
         Args:
             geometry, inertia, ranges: records of the mechanism's own kinds.
-            home: (n,) the pose that it works around, from which the working mode follows; about the middle of the
-                workspace by default.
-            home_joints: (m,) its joints there, which choose a branch of each limb's inverse, such as elbows in; by
-                default the usual branches.
+            home: (n,) the pose that the robot works around. It decides the working mode. By default it is near the
+                middle of the workspace.
+            home_joints: (m,) joints near those at home. They choose a branch of each limb's inverse, such as elbow in.
+                By default the usual branches are used.
 
         Raises:
-            InvalidValue, InvalidShape: naming the part.
+            InvalidValue, InvalidShape: the message names the part.
         """
         self.geometry = geometry if geometry is not None else self.Geometry()
         if not isinstance(self.geometry, self.Geometry):
@@ -83,12 +83,12 @@ class Mechanism(Definition):
         return self._hash
 
     def conditions(self) -> dict[str, Any]:
-        """Plain data that a margin depends on beside the geometry: the joint ranges and the working mode."""
+        """The plain data that a margin depends on besides the geometry: joint ranges and working mode."""
         return {"ranges": asdict(self.ranges), "mode": self.mode}
 
     @property
     def conditions_digest(self) -> str:
-        """SHA-256 of `conditions`, to tell which robot a proof was made for."""
+        """SHA-256 of `conditions`. A proof states it, so that it is known which robot it is for."""
         return hashlib.sha256(json.dumps(self.conditions(), sort_keys=True).encode()).hexdigest()
 
     def with_inertia(self, inertia: InertiaRecord) -> Self:
@@ -96,7 +96,7 @@ class Mechanism(Definition):
         return type(self)(self.geometry, inertia, self.ranges, *self._given)
 
     def with_geometry(self, geometry: GeometryRecord) -> Self:
-        """The same robot with another geometry; a home that was given stays."""
+        """The same robot with another geometry; a given home is kept."""
         return type(self)(geometry, self.inertia, self.ranges, *self._given)
 
     def __repr__(self) -> str:
@@ -119,10 +119,9 @@ class Mechanism(Definition):
         """(..., m) -> (..., n) the pose with these joints; a NaN row where there is none.
 
         Args:
-            joints: of the working mode's limbs [m or rad].
-            near: (n,) or (..., n) poses to continue from, each in the assembly mode that is wanted: the joints move
-                there on a straight line without a singularity on the way, or else the pose does. By default the
-                assembly mode of `home`.
+            joints: (..., m) joints of the working mode [m or rad].
+            near: (n,) or (..., n) known poses, each in the wanted assembly mode. From there the joints, or else the
+                pose, move on a straight line without a singularity. By default the assembly mode is that of `home`.
         """
         if near is None:
             return self.working_forward(joints)
@@ -134,14 +133,14 @@ class Mechanism(Definition):
         return evaluate(self.program(expressions.closure), *together(pose, joints))[0]
 
     def closure_gap(self, pose: Array, joints: Array) -> Array:
-        """(..., n), (..., m) -> (..., m) by what displacement of the platform each limb's closure is missed, at least.
+        """(..., n), (..., m) -> (..., m) the least displacement of the platform that would close each limb.
 
-        In radians, or in lengths over the robot's size.
+        It is in radians, or in lengths over the robot's size.
         """
         return evaluate(self.program(expressions.closure_gap), *together(self._poses(pose), self._joints(joints)))[0]
 
     def pose_units(self) -> Array:
-        """(n,) what makes a difference of poses small or large: the robot's size for a length [m], 1 for an angle."""
+        """(n,) units of pose differences: the robot's size for a length [m], 1 for an angle."""
         units = np.full(len(self.pose_names), self.geometry.size)
         units[list(self.rotations)] = 1.0
         return units
@@ -156,7 +155,7 @@ class Mechanism(Definition):
         return largest
 
     def jacobians(self, pose: Array, joints: Array | None = None) -> tuple[Array, Array]:
-        """J_q (..., m, m) and J_x (..., m, n), with J_q q' = J_x t; working mode, unless `joints` (..., m) say."""
+        """J_q (..., m, m) and J_x (..., m, n), with J_q q' = J_x t; of the working mode, or at `joints` (..., m)."""
         if joints is None:
             diagonal, j_x = self._evaluate(expressions.jacobians, pose)
         else:
@@ -176,7 +175,7 @@ class Mechanism(Definition):
         return self._evaluate(expressions.actuator_jacobian, pose)[0]
 
     def pose_rates(self, pose: Array) -> Array:
-        """(..., n, n) what takes a twist to the rates of the pose: the identity unless the pose holds Euler angles."""
+        """(..., n, n) the matrix from twist to pose rates; the identity unless the pose has Euler angles."""
         return evaluate(self.program(expressions.pose_rates), self._poses(pose), blank=True)[0]
 
     def isotropic(self, pose: Array, characteristic_length: float | None = None) -> tuple[Array, Array]:
@@ -187,7 +186,7 @@ class Mechanism(Definition):
     def force_capability(self, pose: Array, characteristic_length: float | None = None) -> Array:
         """(...,) largest force in every direction for unit actuator effort, over all shares of the efforts.
 
-        With m = n it is f_w; with m > n it is larger, as f_w admits minimum-norm efforts only.
+        With m = n it is f_w. With m > n it is larger, as f_w uses only efforts of least norm.
         """
         return self.margin("force_capability", pose, characteristic_length=characteristic_length)
 
@@ -212,10 +211,10 @@ class Mechanism(Definition):
     def margin(
         self, name: str, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None
     ) -> Array:
-        """(...,) a named margin, the larger the better: the smallest of its components at each pose.
+        """(...,) a named margin: the smallest of its components at each pose; a larger margin is better.
 
-        Every mechanism has `kinematics.margins.STANDARD`; `margins` holds these, and what the mechanism adds. NaN where
-        the pose is out of reach (but for reach itself).
+        Every mechanism has the margins `kinematics.STANDARD`; `margins` holds these and the mechanism's other ones. NaN
+        where the pose is out of reach, except for reach itself.
 
         Raises:
             InvalidValue: the mechanism has no such margin.
@@ -239,12 +238,12 @@ class Mechanism(Definition):
     def margin_program(
         self, name: str, bounds: FviBounds | None = None, characteristic_length: float | None = None
     ) -> BlockProgram:
-        """What computes a margin: at a pose, the margin and a number that is NaN out of reach."""
+        """The program of a margin: from a pose to the margin, and to a number that is NaN out of reach."""
         measure = Measure(bounds or self.fvi_bounds, self._length(characteristic_length))
         return self.program(expressions.within_reach, expressions.margin, name, measure)
 
     def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
-        """A margin's components in the model's symbols `pose` and `geometry`, each to be at least the bound.
+        """A margin's components in the model's symbols `pose` and `geometry`. Each must be at least the bound.
 
         Raises:
             InvalidValue: the mechanism has no such margin.
@@ -257,10 +256,11 @@ class Mechanism(Definition):
         return dict(zip(self.skeleton(model.pose, model.joints, model.g), (p.T for p in lines), strict=True))
 
     def singularities(self, pose: Array, tolerance: float = 1e-6) -> dict[str, Array]:
-        """Which kinds of singularity hold at the poses, (...,) each; False where a limb cannot reach.
+        """For each kind of singularity, whether the poses have it, (...,); False where a limb cannot reach.
 
-        `serial` (J_q; the paper's under-mobility), `parallel` (J_x; over-mobility) and, where single rods hold the
-        platform's orientation, `internal` (J_int); each where the normalised margin is at most the tolerance.
+        The kinds are `serial` (J_q; the paper's under-mobility), `parallel` (J_x; over-mobility) and, if single rods
+        hold the platform's orientation, `internal` (J_int). A pose has a kind if the normalised margin is at most
+        the tolerance.
         """
         kinds = {m.singularity: name for name, m in self.margins.items() if m.singularity}
         return {kind: self.margin(name, pose) <= tolerance for kind, name in kinds.items()}
@@ -269,7 +269,7 @@ class Mechanism(Definition):
         """Check every pose.
 
         Raises:
-            UnreachablePose: naming the worst pose, its limb (counted from 1) and margin [m].
+            UnreachablePose: it names the worst pose, its limb (counted from 1) and margin [m].
         """
         pose = self._poses(pose)
         margins = self._reach(pose)
@@ -296,9 +296,9 @@ class Mechanism(Definition):
         return length
 
     def _evaluate(self, write: Callable[..., list[ca.SX]], pose: Array, *given: Any) -> list[Array]:
-        """What `write(robot, model, *given)` says at each pose; NaN as a whole where a limb cannot reach.
+        """The outputs of `write(robot, model, *given)` at each pose; all NaN where a limb cannot reach.
 
-        NaN too where the pose is not finite or any of the outputs has no value.
+        They are also NaN where the pose is not finite or an output has no value.
         """
         program = self.program(expressions.within_reach, write, *given)
         return evaluate(program, self._poses(pose), blank=True)[:-1]
@@ -322,7 +322,7 @@ class Mechanism(Definition):
 
 
 def _vector(given: Sequence[float] | Array | None, what: str, names: tuple[str, ...]) -> list[float] | None:
-    """Finite numbers under these names."""
+    """The given numbers as a list, after a check that there is a finite one for each name."""
     if given is None:
         return None
     array = checked(np.asarray(given), what, names)

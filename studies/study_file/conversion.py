@@ -10,7 +10,7 @@ from studies.study_file.keys import Key, Table
 from studies.study_file.units import Dimension, unit_ending, value_in_si
 from studies.study_file.unknown_keys import known_keys, spellings
 
-SMALLEST, LARGEST = 1e-15, 1e15  # in SI: beyond these no length, time, mass or limit of a machine is meant
+SMALLEST, LARGEST = 1e-15, 1e15  # in SI: no real length, time, mass or limit of a machine is outside these
 
 
 @dataclass(frozen=True)
@@ -28,17 +28,17 @@ class Conversion:
 
     findings: list[Finding] = field(default_factory=list)
     spelling: dict[KeyPath, KeyPath] = field(default_factory=dict)
-    reported: set[KeyPath] = field(default_factory=set)  # SI paths whose absence a finding explains
+    reported: set[KeyPath] = field(default_factory=set)  # SI paths that are missing because of a finding
 
     def to_si(self, data: Mapping[str, Any], table: Table, path: KeyPath = ()) -> dict[str, Any]:
-        """`data` with SI values, no suffixes and tuples for arrays; faulty keys become findings."""
+        """`data` in SI, with names without suffixes and tuples for arrays. Each wrong key becomes a finding."""
         converted: dict[str, Any] = {}
         for spelling, value in data.items():
             name, suffix = self._split(spelling, table, path)
             if name is None:
                 continue
             if name in converted:
-                self._report(path, spelling, f"{name} given twice", "one spelling of it", [name])
+                self._report(path, spelling, f"{name} given twice", "only one spelling of it", [name])
                 continue
             self.spelling[(*path, name)] = (*path, spelling)
             converted[name] = self._value(value, table.keys[name], suffix, (*path, name))
@@ -50,8 +50,8 @@ class Conversion:
             least = 0.0 if node.place or node.dimension in (Dimension.ANGLE, Dimension.FRAME) else SMALLEST
             odd = [number for number in _numbers(converted) if number and not least <= abs(number) <= LARGEST]
             if odd:
-                sizes = f"from {SMALLEST:g} to {LARGEST:g}" if least else f"of at most {LARGEST:g}"
-                found, expected = f"{odd[0]:g} in SI", f"0, or a number of a size {sizes}"
+                sizes = f"from {SMALLEST:g} to {LARGEST:g}" if least else f"up to {LARGEST:g}"
+                found, expected = f"{odd[0]:g} in SI", f"0, or a number whose size is {sizes}"
                 self.findings.append(Finding(self.spelling[path], found, expected))
             return converted
         if isinstance(value, list):
@@ -59,7 +59,7 @@ class Conversion:
         return self.to_si(value, node, path) if isinstance(value, dict) else value
 
     def _split(self, spelling: str, table: Table, path: KeyPath) -> tuple[str | None, str]:
-        """The key's name and its suffix; the name is None for a key that became a finding."""
+        """The key's name and its suffix; the name is None if the key became a finding."""
         if spelling in table.keys:
             return spelling, ""
         name, suffix = unit_ending(spelling, table.keys)

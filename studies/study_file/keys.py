@@ -9,10 +9,10 @@ from studies.study_file.units import SI_UNIT, SUFFIX, Dimension
 
 @dataclass(frozen=True)
 class Key:
-    """What a key may hold: `expected` in words, and the dimension that decides its suffix.
+    """The values that a key may have: `expected` in words, and the dimension that decides its suffix.
 
-    Where `choices` are given, the words name them. A `place` may be at 0, and so anywhere close to it: what rounding
-    leaves of a 0 is not too small a number there. Nor is it of angles and frames.
+    If there are `choices`, the words name them. A `place`, an angle and a frame may be 0 or any small number, such as
+    the rounding error of a 0. Other numbers that small are refused.
     """
 
     expected: str
@@ -22,16 +22,16 @@ class Key:
 
     @property
     def unit(self) -> str:
-        """In SI; "" where the words say it, or there is none."""
+        """The SI unit; "" if `expected` names it, or if there is none."""
         return SI_UNIT.get(self.dimension, "")
 
     @property
     def suffix(self) -> str:
-        """What a spelling in the other unit ends in; "" where there is none."""
+        """The ending of the key in its other unit; "" if there is no other unit."""
         return SUFFIX.get(self.dimension, "")
 
     def describe(self, suffix: str = "", found: object = None) -> str:
-        """The words of an error, in the unit of a key spelled with `suffix`."""
+        """The words of an error, in the unit of `suffix`."""
         unit = suffix or self.unit
         words = f"{self.expected} ({unit})" if unit else self.expected
         if not self.choices:
@@ -42,7 +42,7 @@ class Key:
 
 @dataclass(frozen=True)
 class Table:
-    """The keys of a table; with `rows`, of each table of an array; `other` is one that stands in its place."""
+    """The keys of a table, or with `rows` of each table of an array; `other` is a table that may replace it."""
 
     keys: "Mapping[str, Key | Table]"
     rows: bool = False
@@ -53,18 +53,18 @@ class Table:
         return replace(self, keys={**self.keys, **keys})
 
     def describe(self, found: object = None) -> str:
-        """The words of an error where there is no such table, or where it must not be."""
+        """The words of an error if the table is missing, or if it is not allowed."""
         if self.other and isinstance(found, dict):
-            return f"no such table beside {self.other}: only one of the two"
+            return f"only one of this table and {self.other}"
         keys = f"one or more of {', '.join(self.keys)}"
-        instead = f", or {self.other} in its place" if self.other else ""
+        instead = f", or {self.other} instead" if self.other else ""
         return f"an array of tables, each with {keys}" if self.rows else f"a table with {keys}{instead}"
 
 
 def closest(wrong: Iterable[object], choices: Iterable[str]) -> str | None:
-    """The choice that the first misspelt word most likely means; capitals do not count."""
+    """The choice that is closest to the first misspelt word; capital letters do not matter."""
     word = next((w for w in wrong if isinstance(w, str)), "")
-    # A word much longer than any name is no slip of the pen, and costly to compare.
+    # Only the start is compared: a very long word is not a misspelt name, and comparing it takes long.
     lowered = {choice.lower(): choice for choice in choices}
     near = difflib.get_close_matches(word[:64].lower(), list(lowered), n=1)
     return lowered[near[0]] if near else None

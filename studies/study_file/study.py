@@ -1,4 +1,4 @@
-"""The study file: one question, asked in `study.toml`, as a frozen model in SI and radians."""
+"""The study: the content of `study.toml` as a frozen model in SI and radians."""
 
 from typing import Annotated, Any, Literal, Self
 
@@ -32,17 +32,17 @@ class _RegionTable(StudyTable):
 
 
 class BoxTable(_RegionTable):
-    """Every pose coordinate has its interval."""
+    """Every pose coordinate has an interval or a fixed value."""
 
     kind: Annotated[Literal["box"], KIND]
-    """The shape; every coordinate of the pose stands beside it."""
+    """The shape. Give every coordinate of the pose too."""
 
 
 class CylinderTable(_RegionTable):
-    """x and y lie within `radius` [m] of the z axis; `coordinates` has the others."""
+    """x and y are within `radius` [m] of the z axis; `coordinates` has the other coordinates."""
 
     kind: Annotated[Literal["cylinder"], KIND]
-    """The shape; every coordinate of the pose but x and y stands beside it."""
+    """The shape. Give every coordinate of the pose too, except x and y."""
     radius: Annotated[Positive, Key("a length > 0", LENGTH)]
     """The largest distance from the z axis."""
 
@@ -51,9 +51,9 @@ class HomeTable(StudyTable):
     """The pose that the robot works around: its working mode follows from it, and an approach starts there."""
 
     coordinates: dict[str, float]
-    """The pose [m or rad]. A coordinate that is left out is in the middle of the region."""
+    """The pose [m or rad]. A coordinate that is not given is in the middle of the region."""
     joints: Annotated[tuple[float, ...] | None, Key("a finite number a joint")] = None
-    """Joints near those at home. They choose the branches of the inverse, such as elbows in. None takes the usual."""
+    """Joints near those at home. They choose the branch of each limb, such as elbow in. None takes the usual ones."""
 
     @model_validator(mode="before")
     @classmethod
@@ -62,12 +62,12 @@ class HomeTable(StudyTable):
 
 
 class FviTable(StudyTable):
-    """What the force-velocity index (39) compares: what the joints give, and what is wanted."""
+    """The numbers of the force-velocity index (39): what each joint gives, and what is wanted."""
 
     joint_speed: Annotated[Positive, Key("a speed > 0", Dimension.JOINT_SPEED)]
-    """The largest value that each joint gives."""
+    """The largest speed of each joint."""
     joint_effort: Annotated[Positive, Key("an effort > 0 (N m, or N on a rail)")]
-    """The largest value that each joint gives."""
+    """The largest torque or force of each joint."""
     speed: Annotated[Positive, Key("a speed > 0 (m/s)")]
     """The wanted worst isotropic speed [m/s]."""
     force: Annotated[Positive, Key("a force > 0 (N)")]
@@ -77,7 +77,7 @@ class FviTable(StudyTable):
 
 
 class SumTable(StudyTable):
-    """The sum of the geometry's `fields` is `at_most` [m]."""
+    """A limit: the sum of the geometry's `fields` is at most `at_most` [m]."""
 
     fields: Annotated[Annotated[tuple[Name, ...], Field(min_length=1)], Key("a list out of")]
     """The lengths of the geometry that are added. Lists are added entry by entry."""
@@ -103,15 +103,15 @@ class RequirementTable(StudyTable):
 
     margin: Annotated[str, Key("one of")]
     """The margin."""
-    at_least: Annotated[float, Key("a finite number, of reach 0 or more")]
-    """Its lowest value that is allowed, at every pose of the region and on the cycle."""
+    at_least: Annotated[float, Key("a finite number; for the margin reach, 0 or more")]
+    """The lowest value that is allowed, at every pose of the region and on the cycle."""
 
 
 class CertifyTable(StudyTable):
-    """What is proved over the region: each required margin at its bound, the objective and any other at its best."""
+    """The proofs over the region: each required margin at its bound, the objective and any other margin at its best."""
 
     margins: Annotated[tuple[Name, ...] | None, Key("a list out of")] = None
-    """The margins to prove. None takes all that are required, and the objective."""
+    """The margins to prove. None takes all required margins, and the objective."""
     tolerance: Annotated[Positive, Field(lt=1), Key("a number above 0 and below 1")] = 0.01
     """How far a best bound may stay below the lowest value found, relative to that value."""
     most_boxes: Annotated[int, Field(ge=4, le=8_000_000), Key("a whole number from 4 to 8000000")] = MOST_BOXES
@@ -122,23 +122,23 @@ Seconds = Annotated[Positive, Key("a time > 0 (s)")]
 
 
 class BudgetTable(StudyTable):
-    """How long a stage may take. What it has reached by then is kept and reported."""
+    """The time that each stage may take. A result that it reaches in this time is kept and reported."""
 
     optimise: Seconds = 90.0
     """The time for the optimisation [s]. If it ends without an optimum, the best geometry seen is reported."""
     prove: Seconds = 40.0
-    """The time for all proofs together [s]. What is not decided by then is reported as undecided."""
+    """The time for all proofs together [s]. A claim that is not decided by then is reported as undecided."""
     map: Seconds = 60.0
-    """The time for a map, and again for its certified part [s]."""
+    """The time for a map [s]. The proof of its certified part gets the same time again."""
 
     @classmethod
     def each(cls, seconds: float) -> Self:
-        """The same for each stage."""
+        """A budget with the same time for each stage [s]."""
         return cls(**dict.fromkeys(cls.model_fields, seconds))
 
 
 class Study(StudyTable):
-    """A whole study; `studies.load.load_study` reads one and checks it against its mechanism."""
+    """A whole study. `studies.building.load_study` reads one and checks it against its mechanism."""
 
     name: str
     """The folder's name."""
@@ -147,7 +147,7 @@ class Study(StudyTable):
     mechanism: Annotated[str, Key("the name of a mechanism, or module:Class")]
     """The mechanism to study: a name, or `module:Class` of a module beside the study or on Python's path."""
     mechanism_class: Annotated[type[Mechanism], SkipValidation, Field(exclude=True, repr=False)]
-    """Its class."""
+    """The mechanism's class."""
     code: str = ""
     """SHA-256 of the file that defines the mechanism; "" for one of Linkwright's own."""
     geometry: Annotated[dict[str, GeometryValue], Field(default_factory=dict), Table({})]
@@ -161,17 +161,17 @@ class Study(StudyTable):
     home: Annotated[HomeTable | None, table_of(HomeTable)] = None
     """The pose that the robot works around. None takes the middle of the region."""
     fvi: Annotated[FviTable | None, table_of(FviTable)] = None
-    """What the FVI compares. None takes the mechanism's own numbers."""
+    """The numbers of the force-velocity index (FVI). None takes the mechanism's own numbers."""
     optimise: Annotated[OptimiseTable | None, table_of(OptimiseTable)] = None
-    """What the optimisation may change. None keeps the geometry as it is given."""
+    """The variables of the optimisation. None keeps the given geometry."""
     dense_sample: Annotated[int, Field(ge=10_000, le=100_000_000), Key("a whole number from 10000 to 100000000")] = (
         DENSE
     )
-    """About how many poses the dense search looks at, before it descends from the lowest ones."""
+    """The approximate number of poses of the dense search. It then descends from the lowest ones."""
     requirement: Annotated[tuple[RequirementTable, ...], table_of(RequirementTable, rows=True)] = ()
     """The requirements."""
     certify: Annotated[CertifyTable, table_of(CertifyTable)] = CertifyTable()
-    """What is proved over the region."""
+    """The proofs over the region."""
     trajectory: Annotated[TrajectoryTable | None, table_of(TrajectoryTable)] = None
     """The cycle or path to time. None times nothing."""
     budget: Annotated[BudgetTable, table_of(BudgetTable)] = BudgetTable()
@@ -179,5 +179,5 @@ class Study(StudyTable):
 
     @property
     def digest(self) -> str:
-        """sha256 (hex) of all that the file says but its budget, in SI to 12 digits; without its folder's name."""
+        """SHA-256 (hex) of the whole study except its budget and its folder's name, in SI to 12 digits."""
         return digest_of(plain(self.model_dump(exclude={"name", "budget"}, exclude_defaults=True)))

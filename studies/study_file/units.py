@@ -1,4 +1,4 @@
-"""Unit suffixes: a key may end in `_mm`, `_deg` or `_rpm`; all that follows is in SI and radians."""
+"""Units of keys: a key may end in `_mm`, `_deg` or `_rpm`. The converted values are in SI and radians."""
 
 import math
 import re
@@ -10,7 +10,7 @@ from trajectory import in_si
 
 
 class Dimension(StrEnum):
-    """What a key measures; the first five are also said by a mechanism's geometry."""
+    """The quantity of a key. The fields of a mechanism's geometry use the first five."""
 
     NONE = "none"
     FRAME = "frame"
@@ -39,7 +39,7 @@ _UNIT_WORD = re.compile(
 
 
 def unit_ending(spelling: str, names: Iterable[str]) -> tuple[str, str]:
-    """The longest of `names` that `spelling` adds units to, and these; ("", "") if none."""
+    """The longest of `names` that `spelling` begins with, and the units after it; ("", "") if there is none."""
     for name in sorted(names, key=len, reverse=True):
         ending = spelling.removeprefix(f"{name}_")
         if ending != spelling and all(map(_UNIT_WORD.fullmatch, ending.lower().split("_"))):

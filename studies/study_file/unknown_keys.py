@@ -13,7 +13,7 @@ def known_keys(spelling: str, table: Table) -> tuple[str, list[str]]:
 
 def spellings(name: str, key: Key) -> str:
     """The words for a key with a suffix that it does not take."""
-    return f"{name} ({key.unit}) or {name}_{key.suffix}" if key.suffix else f"{name}, which takes no suffix"
+    return f"{name} ({key.unit}) or {name}_{key.suffix}" if key.suffix else f"{name} without a suffix"
 
 
 def _all_spellings(table: Table) -> list[str]:

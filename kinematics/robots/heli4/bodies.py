@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Heli4Inertia(ArmInertia):
-    """Arms as everywhere here; and the plates.
+    """The masses of the arms and the plates.
 
     Attributes:
-        plate_masses: lower plate (limbs 1 and 2) and upper plate.
+        plate_masses: masses of the lower plate (limbs 1 and 2) and of the upper plate.
         tool: inertia of the tool about e_z; the payload is a point on the lower plate.
     """
 

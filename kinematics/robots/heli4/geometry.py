@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from kinematics.machine import angle, length, screw_pitch
 from kinematics.robots.shared import HalvesGeometry
 
-UPPER = (0.0, 0.0, 1.0, 1.0)  # which limbs hold the plate that rides on the screw: (7), (8)
+UPPER = (0.0, 0.0, 1.0, 1.0)  # 1 for the limbs that hold the plate on the screw: (7), (8)
 _DEG = math.pi / 180.0
 
 
@@ -17,7 +17,7 @@ class Heli4Geometry(HalvesGeometry):
     """Table 1 of the paper, in metres and radians.
 
     Raises:
-        InvalidGeometry: besides what any geometry refuses: both limbs of a plate have the same azimuth.
+        InvalidGeometry: as for any geometry; or both limbs of a plate have the same azimuth.
     """
 
     base_radius: float = length(0.350, doc="R, of the actuators' axes")

@@ -1,7 +1,7 @@
 """Heli4 (Krut, Company, Nabat, Pierrot, IROS 2006): four rotary drives, two plates, a screw that turns the tool.
 
-Limbs 1 and 2 carry the plate at the tool's height, limbs 3 and 4 the plate that rides on the screw. Equation numbers
-are the paper's; where it errs, the expression here follows from the closure and the documentation says so.
+Limbs 1 and 2 carry the plate at the tool's height, limbs 3 and 4 the plate on the screw. Equation numbers are those of
+the paper. If an equation in print is wrong, the expression here follows from the closure, and a comment says so.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ from kinematics.robots.shared import (
 )
 
 _E_Z = ca.DM([0, 0, 1])
-_SAME = 1e-6  # rad, or of the robot's size: poses that differ by no more are one
-_APART = 0.25  # of a rod: with plates further apart the roots may change their order
-_OPEN = 1e-12  # rad, or of the robot's size: by what displacement a closed form may miss
+_SAME = 1e-6  # rad, or times the robot's size: poses that differ by less are the same
+_APART = 0.25  # times a rod's length: if the plates are further apart, the order of the roots may change
+_OPEN = 1e-12  # rad, or times the robot's size: the largest error of a closed form, as a displacement
 
 
 class Heli4(RotaryLimbs, RodLevel):
@@ -56,18 +56,18 @@ class Heli4(RotaryLimbs, RodLevel):
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=150.0)
     margins = by_name(*STANDARD, INTERNAL_DETERMINANT, PASSIVE_JOINT)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta", "epsilon_1", "epsilon_2")
-    # (51): sums and differences of a limb's two rods; the plates' own rotations in place of the relative ones.
+    # (51): sums and differences of a limb's two rods; the plates' own rotations instead of the relative ones.
     row_combinations = np.vstack([np.kron(np.eye(4), [0.5, 0.5]), np.kron(np.eye(4), [1.0, -1.0])])
     column_combinations = np.eye(8)[[0, 1, 2, 4, 5, 3, 6, 7]] - np.outer([0] * 6 + [1, 1], np.eye(8)[3])
 
     @property
     def characteristic_length(self) -> float:
-        """p / (2 pi): the screw's lead turns a rotation into the travel between the plates [m]."""
+        """p / (2 pi) [m], which turns a rotation into the travel between the plates."""
         return abs(self.geometry.pitch) / TURN
 
     @staticmethod
     def default_home(geometry: Heli4Geometry) -> tuple[float, ...]:
-        """On the axis below the drives, in the middle of the reach."""
+        """A pose on the axis below the drives, in the middle of the reach."""
         g = geometry
         depth = height_in_reach(g.base_radius, g.platform_radius, g.arm_length, g.rod_length)
         return 0.0, 0.0, -depth - g.plate_offset, 0.0
@@ -90,7 +90,7 @@ class Heli4(RotaryLimbs, RodLevel):
         )
         return result
 
-    # What makes it dimensionless.
+    # Scales that make the Jacobians dimensionless.
 
     @staticmethod
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
@@ -101,9 +101,9 @@ class Heli4(RotaryLimbs, RodLevel):
 
     @staticmethod
     def rod_closure(pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(8,) rods 11, 12, 21, ... 42; (47). The plates turn by theta + epsilon, the upper one climbs by -p epsilon_2.
+        """(8,) rods 11, 12, 21, ... 42; (47). The plates turn by theta + epsilon; the upper one rises by -p epsilon_2.
 
-        The paper's (49), (53) and (54) print the opposite sign for p, against its own (6).
+        The paper prints the opposite sign of p in (49), (53) and (54), which contradicts its own (6).
         """
         _, axis = radial_directions(g.azimuths)
         arms, platforms = Heli4.limbs(g).elbows(joints), Heli4.platform_points(pose, g)
@@ -157,7 +157,7 @@ class Heli4(RotaryLimbs, RodLevel):
 
     @cached_property
     def _sheet(self) -> int:
-        """Where home hangs from its four elbows: 1 below them, -1 above them, 0 otherwise."""
+        """1 if home is below its four elbows, -1 if it is above them, 0 otherwise."""
         joints = self.inverse(self.home)
         if np.isfinite(joints).all():
             for sheet in (1, -1):
@@ -167,7 +167,7 @@ class Heli4(RotaryLimbs, RodLevel):
         return 1
 
     def _on_sheet(self, joints: Array, sheet: int) -> Array:
-        """(..., 4) -> (..., 4): both pairs of limbs on the lower sheet (1), the smallest real root, or the upper."""
+        """(..., 4) -> (..., 4): both pairs of limbs on the lower sheet (1; smallest real root) or the upper (-1)."""
         quartic, kappa = evaluate(self.program(_quartic), joints)
         signs = np.where(np.arange(4, -1, -1) % 2, sheet, 1)  # of w in place of -w
         w = sheet * real_roots(quartic * signs, most=1)[..., 0]
@@ -175,7 +175,7 @@ class Heli4(RotaryLimbs, RodLevel):
         return self._poses_of(joints, w, t)
 
     def working_forward(self, joints: Array) -> Array:
-        """(..., 4) -> (..., 4): the pose of home's assembly mode: on its sheet, where that is sure."""
+        """(..., 4) -> (..., 4): the pose of home's assembly mode. Where it surely is on home's sheet, that is used."""
         joints = self._joints(joints)
         flat = joints.reshape(-1, 4)
         poses = self._on_sheet(flat, self._sheet) if self._sheet else np.full(flat.shape, np.nan)
@@ -188,7 +188,7 @@ class Heli4(RotaryLimbs, RodLevel):
     def _surely_at_home(self, poses: Array, joints: Array) -> Array:
         """(k,) whether both pairs of limbs hang (or stand) clearly, as at home.
 
-        Where not, beyond a singularity the outermost root may belong to another assembly mode.
+        If not, the outermost root may belong to another assembly mode, on the other side of a singularity.
         """
         together = np.abs(self.geometry.pitch / TURN * poses[:, 3]) <= _APART * self.geometry.rod_length
         (above,) = evaluate(self.program(_above_elbows), poses, joints)
@@ -199,7 +199,7 @@ class Heli4(RotaryLimbs, RodLevel):
     def _candidates(self, joints: Array) -> tuple[Array, Array]:
         """(k, 4) joints -> rows (j,) and poses (j, 4), every real one, in the order of w."""
         in_w, in_t, kappa = evaluate(self.program(_quartics), joints)
-        # w t = kappa: each unknown serves where it is the larger one, up to a factor that no symmetry makes a tie.
+        # w t = kappa: the larger unknown is used. The factor in the comparison avoids ties by symmetry.
         least, tie = np.sqrt(np.abs(kappa)), 0.9
         w, t = real_roots(in_w), real_roots(in_t)
         by_w = np.nonzero((np.abs(w) >= tie * least) & (w != 0.0))
@@ -214,12 +214,12 @@ class Heli4(RotaryLimbs, RodLevel):
         return rows, np.where(lost[:, None], exact, poses)
 
     def _open(self, poses: Array, joints: Array) -> Array:
-        """(k,) whether a closed form lost digits on the way."""
+        """(k,) whether a closed form lost too many digits."""
         result: Array = np.abs(self.closure_gap(poses, joints)).max(axis=-1) > _OPEN
         return result
 
     def assembly_modes(self, joints: Array) -> Array:
-        """(4,) -> (k, 4), every real pose with these joints, at most four; the working one first."""
+        """(4,) -> (k, 4), every real pose with these joints, at most four; that of home's assembly mode is first."""
         joints = self._one(joints)
         _, poses = self._candidates(joints[None])
         return working_first(poses, self.forward(joints), self.geometry.size)
@@ -232,7 +232,7 @@ def _plates(model: Model) -> Plates:
 
 
 def _above_elbows(robot: Heli4, model: Model) -> Build:
-    """(2,) how high each pair of limbs holds its plate above the middle between its elbows, both moved to the plate."""
+    """(2,) height of each plate above the middle between its two elbows, both moved to the plate."""
     to_elbow = robot.limbs(model.g).elbows(model.joints) - robot.platform_points(model.pose, model.g)
     return [model.pose, model.joints], [
         -ca.vertcat(to_elbow[2, 0] + to_elbow[2, 1], to_elbow[2, 2] + to_elbow[2, 3]) / 2

@@ -1,12 +1,12 @@
 """Redundant 3T-1R robot (Shayya, Krut, Company, Baradat, Pierrot, IROS 2013): six parallel slides, four freedoms.
 
 Arms 1, 2 and 5, 6 are single rods to the ends of an upright platform; arms 3 and 4 are parallelograms to its far side.
-Equation numbers are the paper's; where it errs, the expression here follows from the closure and the documentation
-says so. The paper's platform is drawn, not dimensioned; with B_1 = B_2 at (-d/2, 0, a/2), B_3 = B_4 at (d/2, 0, 0) and
-B_5 = B_6 at (-d/2, 0, -a/2) in the platform's frame its Table I comes out.
+Equation numbers are those of the paper. If an equation in print is wrong, the expression here follows from the closure,
+and a comment says so. The paper draws the platform without dimensions. With B_1 = B_2 at (-d/2, 0, a/2), B_3 = B_4 at
+(d/2, 0, 0) and B_5 = B_6 at (-d/2, 0, -a/2) in the platform's frame, the figures of its Table I are reproduced.
 
-The parallelograms are arms 3 and 4 (chains III and IV, section II). Their short sides stand along e_z: a side of any
-other direction would be turned with the platform at one end and not at the other.
+The parallelograms are arms 3 and 4 (chains III and IV, section II). Their short sides are along e_z: in any other
+direction a side would turn with the platform at one end and not at the other.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ _ABOVE = ca.DM([0.5, 0.5, 0.0, 0.0, -0.5, -0.5])  # B_i along e_z, in units of a
 _SIDE = (1, -1, 1, -1, 1, -1)  # y_1 = y_5 = -y_2 = -y_6, y_3 = -y_4
 _FLOOR = (1, 1, 0, 0, -1, -1)  # z_1 = z_2 = -z_5 = -z_6, z_3 = z_4 = 0
 _OUTER = (0, 1, 4, 5)
-_ROUNDING = 1e-9  # of the robot's size, by how much rounding may break (21)
-_CLOSES = 1e-6  # of the robot's size, by how much an arm may miss
+_ROUNDING = 1e-9  # times the robot's size: the error that rounding may cause in (21)
+_CLOSES = 1e-6  # times the robot's size: the largest error of an arm's length
 
 
 class Redundant3T1R(RodLevel):
@@ -68,7 +68,7 @@ class Redundant3T1R(RodLevel):
     mirrors = (("y", "theta"), ("z",))
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=1.0, speed=0.5, force=0.5)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta")
-    # (51) of Krut et al.: single rods stay, a parallelogram gives its rods' mean and, last, their difference.
+    # (51) of Krut et al.: rows of single rods stay; a parallelogram gives its rods' mean and, last, their difference.
     row_combinations = np.zeros((8, 8))
     row_combinations[[0, 1, 4, 5], [0, 1, 6, 7]] = 1.0
     row_combinations[2:4, 2:6] = np.kron(np.eye(2), [0.5, 0.5])
@@ -82,7 +82,7 @@ class Redundant3T1R(RodLevel):
 
     @staticmethod
     def default_home(geometry: Redundant3T1RGeometry) -> tuple[float, ...]:  # noqa: ARG004
-        """Midway between all rails; where along them makes no difference."""
+        """The middle between all rails; the place along them makes no difference."""
         return 0.0, 0.0, 0.0, 0.0
 
     # Points.
@@ -127,18 +127,18 @@ class Redundant3T1R(RodLevel):
 
     @staticmethod
     def inverse_closed_form(pose: ca.SX, g: SimpleNamespace, mode: Mode) -> ca.SX:
-        """(7): usually every slide is behind its platform point, the minus of (5)."""
+        """(7): usually every slide is behind its platform point, which is the minus sign in (5)."""
         roots = Redundant3T1R.limb_roots(pose, g)
         return Redundant3T1R._across(pose, g)[0] - ca.vertcat(*(b * roots[i] for i, b in enumerate(mode.branches)))
 
     @classmethod
     def limb_roots(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """How far each slide is from the foot of its platform point."""
+        """Distance of each slide from the point of its rail that is nearest to the platform point."""
         return ca.sqrt(cls.arm_lengths(g) ** 2 - cls._across(pose, g)[1])
 
     @staticmethod
     def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """Each arm's length less the distance of its platform point from the rail [m]."""
+        """Each arm's length minus the distance of its platform point from the rail [m]."""
         return Redundant3T1R.arm_lengths(g) - ca.sqrt(Redundant3T1R._across(pose, g)[1])
 
     @staticmethod
@@ -149,10 +149,10 @@ class Redundant3T1R(RodLevel):
     # Rods, masses, drawing.
 
     def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:
-        """Universal joints whose first pins stand along e_z at both ends, and so turn freely with the platform.
+        """Universal joints whose first pins are along e_z at both ends, so that they turn freely with the platform.
 
-        The paper has spherical joints or, for their limited angles, three revolute ones (section II); that an upright
-        pin comes first is an assumption of this project.
+        The paper has spherical joints or, as their angles are limited, three revolute joints (section II). That the
+        first pin is upright is an assumption of this project.
         """
         arms, lengths = self.platform_points(pose, g) - self.rail_points(joints, g), self.arm_lengths(g)
         up = ca.SX([0, 0, 1])
@@ -187,7 +187,7 @@ class Redundant3T1R(RodLevel):
 
     @staticmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
-        """A stretch of each rail about its slide, the arms (both rods of 3 and 4), and the platform."""
+        """A part of each rail about its slide, the arms (both rods of 3 and 4), and the platform."""
         rails, platform = Redundant3T1R.rail_points(joints, g), Redundant3T1R.platform_points(pose, g)
         stretch, half = ca.vertcat(g.outer_arm_length / 4, 0, 0), ca.vertcat(0, 0, g.parallelogram_width / 2)
         lines = {}
@@ -206,7 +206,7 @@ class Redundant3T1R(RodLevel):
         """{(i, j): (...,) metres} between the axes of arms, from 1, that share no platform point; NaN out of reach.
 
         Args:
-            rods: take arms 3 and 4 as the two rods that they are, not as the middle line A_i B_i.
+            rods: use both rods of arms 3 and 4, not their middle line A_i B_i.
         """
         rails, platform = self._evaluate(_arm_ends, pose)
         return arm_distances(rails, platform, self.geometry.parallelogram_width if rods else 0.0)
@@ -216,7 +216,7 @@ class Redundant3T1R(RodLevel):
         return arms_apart(*_arm_ends(self, self.model()))
 
     def arm_clearance(self, pose: Array, rods: bool = False) -> Array:
-        """(...,) the smallest of `arm_distances` [m]; the arms' thickness is still to be taken off."""
+        """(...,) the smallest of `arm_distances` [m], between axes: subtract the arms' thickness."""
         result: Array = np.min(list(self.arm_distances(pose, rods).values()), axis=0)
         return result
 
@@ -230,7 +230,8 @@ class Redundant3T1R(RodLevel):
     def working_forward(self, joints: Array) -> Array:
         """(..., 6) -> (..., 4), the candidate of (20) with every slide behind its platform point, (21), or ahead.
 
-        With slides on both sides two candidates may meet, where each loses half its digits: Newton gives them back.
+        With slides on both sides two candidates may be equal. Each then loses half of its digits. Newton's method
+        restores them.
         """
         joints = self._joints(joints)
         poses = self._chosen(joints, _CLOSES * self.geometry.size)
@@ -239,14 +240,14 @@ class Redundant3T1R(RodLevel):
         return polished(self, poses.reshape(-1, 4), joints.reshape(-1, LIMBS), 4).reshape(poses.shape)
 
     def paper_forward(self, joints: Array) -> Array:
-        """(..., 6) -> (..., 4) what the paper's model gives, which never looks at x_6, to joints of no pose too.
+        """(..., 6) -> (..., 4) the pose of the paper's model, which ignores x_6, even if no pose has these joints.
 
-        `forward_least_squares` weighs all six.
+        `forward_least_squares` uses all six joints.
         """
         return self._chosen(self._joints(joints), np.inf)
 
     def _chosen(self, joints: Array, tolerance: float) -> Array:
-        """The best candidate; NaN where an arm or the platform would be too long or too short by more than this [m]."""
+        """The best candidate; NaN if an arm or the platform would be wrong by more than `tolerance` [m]."""
         poses, errors, ahead = self._candidates(joints)
         score = np.fmax(np.where(np.isnan(errors), np.inf, errors), -ahead)
         best = score.argmin(axis=-1)[..., None]
@@ -287,14 +288,15 @@ class Redundant3T1R(RodLevel):
         return home
 
     def check_encoders(self, joints: Array, accuracy: float = 1e-6) -> EncoderCheck:
-        """Which encoder is faulty, as far as the two redundancy equations tell; see `redundancy.check_encoders`.
+        """Find the faulty encoder from the two redundancy equations; see `joint_redundancy.check_encoders`.
 
-        Encoders 3 and 4 can never be told apart: the outer arms alone place B_1, which leaves one equation more than
-        the angle needs, and either of the two may be the one that is wrong.
+        Encoders 3 and 4 can never be told apart. The outer arms alone decide B_1, which leaves only one equation more
+        than the angle needs, and either of the two encoders may be wrong.
 
-        With the default geometry and theta within ±90° a fault of encoder 1, 2, 5 or 6 is seen from 2.5 times the
-        accuracy on at the median of reachable poses, from 6 times on at every one tried; one of 3 or 4 from 4 times on
-        at the median, 25 times at 95 % of them, and not at all where its arm is level with the turn.
+        The following holds for the default geometry and theta within ±90°. A fault of encoder 1, 2, 5 or 6 is found if
+        it is 2.5 times the accuracy at the median of reachable poses, and 6 times at every pose tried. A fault of
+        encoder 3 or 4 is found from 4 times the accuracy at the median, from 25 times at 95 % of the poses, and not at
+        all where a turn of the platform does not move along its arm.
 
         Args:
             joints: (..., 6) measured.

@@ -48,7 +48,7 @@ def test_what_rounding_leaves_of_a_zero_is_a_place_and_no_size(
     assert study.home is not None
     assert study.home.coordinates == {"x": 6.123e-17, "theta": -1e-16}
     assert study.region.coordinates["x"] == (-1.2e-17, 0.1)
-    with pytest.raises(StudyError, match="0, or a number of a size from 1e-15 to"):
+    with pytest.raises(StudyError, match="0, or a number whose size is from 1e-15 to"):
         load_study(read_toml(write(study_text.replace("radius = 0.5", "radius = 1e-16"))))
 
 

@@ -165,9 +165,14 @@ def test_a_way_that_ends_where_it_starts_is_a_closed_cycle_and_no_half(tmp_path:
         (CYCLE + "lift_mm = 25\nspan_mm = 100\nplace_lift_mm = 19\n", HELI4, "cycle.blend_mm", "at most the lift"),
         (CYCLE + "lift_mm = 25\nspan_mm = 100\ntilt_deg = [1, 2]\n", HELI4, "cycle.tilt_deg", "one of"),
         (CYCLE + "lift_mm = 25\nspan_mm = 100\n", PLANAR, "trajectory.cycle", "one of"),
-        ("", HELI4, "trajectory.path", "or [trajectory.cycle] in its place"),
+        ("", HELI4, "trajectory.path", "or [trajectory.cycle] instead"),
         ("", PLANAR, "trajectory.path", "file, waypoint, payload"),
-        (CYCLE + 'size = "25/305/25"\n' + ROWS, HELI4, "trajectory.path", "no such table beside [trajectory.cycle]"),
+        (
+            CYCLE + 'size = "25/305/25"\n' + ROWS,
+            HELI4,
+            "trajectory.path",
+            "only one of this table and [trajectory.cycle]",
+        ),
         ("[trajectory.path]\npayload = 1.0\n", HELI4, "trajectory.path", "either a file or waypoints"),
         (
             "[[trajectory.path.waypoint]]".join(ROWS.split("[[trajectory.path.waypoint]]")[:2]),
