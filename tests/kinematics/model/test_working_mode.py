@@ -24,6 +24,7 @@ from kinematics import (
     Planar3RRR,
     Redundant3T1R,
 )
+from tests.sizes import later
 
 EACH = pytest.mark.parametrize("kind", MECHANISMS.values(), ids=list(MECHANISMS))
 UPSIDE_DOWN = {  # coordinates of the pose that change sign when the robot is mirrored in the plane of its drives
@@ -233,7 +234,7 @@ def test_the_default_home_is_within_reach_at_any_size(kind: Any) -> None:
 
 
 @EACH
-@pytest.mark.parametrize("size", [1e-3, 0.02, 50.0, 1e3])
+@pytest.mark.parametrize("size", [1e-3, later(0.02), later(50.0), later(1e3)])
 def test_a_robot_of_another_size_does_the_same(kind: Any, size: float) -> None:
     """Lengths scale, angles stay; and with them all dimensionless margins."""
     usual, robot = kind(), kind(scaled(kind, size))

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.sizes import later
 from tests.studies.command_line import SMALL, SmallRun, linkwright
 from trajectory import read_setpoints
 
@@ -105,7 +106,7 @@ main()
 """
 
 
-@pytest.mark.parametrize("after", [0, 1])
+@pytest.mark.parametrize("after", [later(0), 1])
 def test_an_interrupt_ends_a_run_at_once_even_inside_the_solver(tmp_path: Path, after: int) -> None:
     """Once IPOPT has begun to iterate, and ten iterations or a problem later."""
     call = [sys.executable, "-u", "-c", LOUD, "run", "heli4", "--out", str(tmp_path / "out")]

@@ -31,8 +31,8 @@ def timed(
     if request.param == "jerk":
         return jerk_limited(robot, path, replace(limits, jerk=1e5), 1.0, 40)
     if request.param == "toppra":
-        return time_optimal(robot, path, limits, 1.0, 1000)
-    return time_optimal(robot, Reversed(AdeptCycle(blend=0.004, turn=-2.0, heading=0.4)), limits, 1.0, 1000)
+        return time_optimal(robot, path, limits, 1.0, 200)
+    return time_optimal(robot, Reversed(AdeptCycle(blend=0.004, turn=-2.0, heading=0.4)), limits, 1.0, 200)
 
 
 def test_every_instant_lies_within_the_slack_around_the_middle_of_its_part(robot: Heli4, timed: TimedPath) -> None:
