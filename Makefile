@@ -20,10 +20,10 @@ demo: $(READY)  ## the whole way: optimise Heli4, check it, time its cycle, writ
 	$(BIN)/linkwright run heli4 --out out/heli4
 
 test: lint types  ## ruff, mypy and the tests
-	$(BIN)/python -m pytest -n 2 -m "not long" --ignore=tests/bench
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not long" --ignore=tests/bench
 
 test-long: $(READY)  ## random trials and statistics, some minutes
-	$(BIN)/python -m pytest -n 2 -m long --ignore=tests/bench
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m long --ignore=tests/bench
 
 lint: $(READY)
 	$(BIN)/ruff check .

@@ -10,7 +10,7 @@ import pytest
 import kinematics
 from kinematics import InertiaRecord
 from kinematics.machine import RodRanges, angle, length, screw_pitch
-from tests.studies.command_line import SMALL, SmallRun, linkwright_apart
+from tests.studies.command_line import SMALL, SmallRun, linkwright
 
 STUDY = """\
 title = "Fake on its prototype"
@@ -160,4 +160,4 @@ def minimal_text() -> str:
 def small_run(tmp_path_factory: pytest.TempPathFactory) -> SmallRun:
     folder = tmp_path_factory.mktemp("small")
     (folder / "study.toml").write_text(SMALL)
-    return folder, linkwright_apart("run", folder / "study.toml", "--out", folder / "out", "--commit", "--json")
+    return folder, linkwright("run", folder / "study.toml", "--out", folder / "out", "--commit", "--json")

@@ -7,14 +7,19 @@ import numpy as np
 import pytest
 
 from design.claims import Statement, to_show
-from kinematics import MECHANISMS, ClaimSymbols, Mechanism
+from kinematics import MECHANISMS, ClaimSymbols, Mechanism, Redundant3T1R
 from kinematics.evaluation.block_interpreter import bulk, evaluate
+from tests.sizes import few_of
 
 ROBOTS = [mechanism() for mechanism in MECHANISMS.values()]
 CASES = [(robot, margin) for robot in ROBOTS for margin in robot.margins]
 
 
-@pytest.mark.parametrize(("robot", "margin"), CASES, ids=[f"{type(r).__name__}-{m}" for r, m in CASES])
+@pytest.mark.parametrize(
+    ("robot", "margin"),
+    few_of(CASES, lambda robot, margin: isinstance(robot, Redundant3T1R) or margin in ("J_q", "det_J_x")),
+    ids=[f"{type(robot).__name__}-{margin}" for robot, margin in CASES],
+)
 def test_the_claims_hold_exactly_where_the_margin_reaches_the_bound(robot: Mechanism, margin: str) -> None:
     rng, model, claim = np.random.default_rng(31), robot.model(), ClaimSymbols.fresh()
     home = np.array(robot.home)

@@ -25,6 +25,7 @@ from design.synthesis.exchange import rounded
 from design.synthesis.nlp import NlpSolution, Problem, active_sets, solve
 from design.synthesis.synthesis import _offenders, synthesise
 from kinematics import Delta, GoughStewart, Heli4, Hexa, InvalidValue, Peppermill, Redundant3T1R
+from tests.sizes import later
 
 REGION = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-math.pi, math.pi))
 ROBOT = Heli4()
@@ -73,7 +74,7 @@ def test_requirements_hold_between_the_poses_that_were_solved_on() -> None:
         about=ABOUT,
     )
     for requirement in requirements:
-        denser = worst_poses(found.robot, REGION, requirement.margin, about=500_000)
+        denser = worst_poses(found.robot, REGION, requirement.margin, about=300_000)
         assert denser.value >= requirement.at_least
 
 
@@ -194,7 +195,8 @@ def delta(*variables: tuple[str, float, float], **others: object) -> Problem:
     return replace(problem(*variables, **others), robot=robot, **measured)  # type: ignore[arg-type]
 
 
-def test_bounds_from_a_millimetre_to_ten_metres_with_sums_and_floors_give_the_narrow_bounds_answer() -> None:
+@pytest.mark.parametrize("seed", [0, later(1)])
+def test_bounds_from_a_millimetre_to_ten_metres_with_sums_and_floors_give_the_narrow_bounds_answer(seed: int) -> None:
     wide = delta(
         *((name, 0.001, 10.0) for name in ("base_radius", "platform_radius", "arm_length", "rod_length")),
         requirements=(Requirement("J_q", 0.1), Requirement("reach", 0.05)),
@@ -202,9 +204,8 @@ def test_bounds_from_a_millimetre_to_ten_metres_with_sums_and_floors_give_the_na
     )
     narrow = delta(("base_radius", 0.3, 0.5), ("arm_length", 0.3, 0.6), ("rod_length", 0.6, 1.0))
     best = synthesise(narrow, DELTA_BOX, starts=1, about=20_000).after["fvi"].value
-    for seed in (0, 1):
-        found = synthesise(wide, DELTA_BOX, starts=2, seed=seed, about=20_000, seconds=120.0)
-        assert found.after["fvi"].value == pytest.approx(best, rel=2e-5), f"seed {seed}"
+    found = synthesise(wide, DELTA_BOX, starts=2, seed=seed, about=20_000, seconds=120.0)
+    assert found.after["fvi"].value == pytest.approx(best, rel=2e-5)
 
 
 def test_six_freedoms_with_bounds_over_four_decades_are_solved() -> None:

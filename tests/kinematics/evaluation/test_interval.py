@@ -15,6 +15,7 @@ from kinematics.evaluation.box_program import BoxProgram
 from kinematics.evaluation.interval_interpreter import enclose, operate
 from kinematics.evaluation.program import Op, Program
 from tests.arb import OPERATIONS, arb
+from tests.sizes import few_or_many
 
 ALL = (-math.inf, math.inf)
 PI = math.pi
@@ -58,18 +59,26 @@ def holds(op: Op, first: tuple[float, float, float], second: tuple[float, float,
 
 
 @pytest.mark.parametrize("op", PLAIN, ids=lambda op: op.name)
-@settings(max_examples=300)
-@given(interval_and_point(), interval_and_point())
-def test_an_operation_encloses_the_exact_value(op: Op, first: tuple, second: tuple) -> None:  # type: ignore[type-arg]
-    holds(op, first, second)
+@few_or_many(100, 2000)
+def test_an_operation_encloses_the_exact_value(op: Op, count: int) -> None:
+    @settings(max_examples=count)
+    @given(interval_and_point(), interval_and_point())
+    def encloses(first: tuple[float, float, float], second: tuple[float, float, float]) -> None:
+        holds(op, first, second)
+
+    encloses()
 
 
 @pytest.mark.parametrize("op", TRIGONOMETRIC, ids=lambda op: op.name)
-@settings(max_examples=1000)
-@given(interval_and_point(), interval_and_point())
-def test_sine_cosine_and_arctangent_enclose_too(op: Op, first: tuple, second: tuple) -> None:  # type: ignore[type-arg]
-    if op is Op.ATAN2 or abs(first[2]) < 1e15:  # arbitrary precision itself loses larger angles
-        holds(op, first, second)
+@few_or_many(200, 5000)
+def test_sine_cosine_and_arctangent_enclose_too(op: Op, count: int) -> None:
+    @settings(max_examples=count)
+    @given(interval_and_point(), interval_and_point())
+    def encloses(first: tuple[float, float, float], second: tuple[float, float, float]) -> None:
+        if op is Op.ATAN2 or abs(first[2]) < 1e15:  # arbitrary precision itself loses larger angles
+            holds(op, first, second)
+
+    encloses()
 
 
 @given(st.integers(-300_000, 300_000), st.floats(-1e-9, 1e-9), st.floats(-1e-9, 1e-9))
@@ -83,12 +92,16 @@ def test_cosine_near_a_multiple_of_pi_is_enclosed(turns: int, left: float, right
         assert operate(Op.COS, (low, high), (0.0, 0.0))[turns % 2 == 0] == (1.0 if turns % 2 == 0 else -1.0)
 
 
-@given(st.floats(-1e6, 1e6))
-@settings(max_examples=2000)
-def test_the_library_is_as_accurate_as_is_assumed(x: float) -> None:
-    assert abs(arb(float(np.cos(x))) - arb(x).cos()) < 2.0**-50
-    assert abs(arb(float(np.sin(x))) - arb(x).sin()) < 2.0**-50
-    assert abs(arb(float(np.arctan2(x, 0.37))) - arb.atan2(arb(x), arb(0.37))) < 2.0**-50
+@few_or_many(500, 10_000)
+def test_the_library_is_as_accurate_as_is_assumed(count: int) -> None:
+    @settings(max_examples=count)
+    @given(st.floats(-1e6, 1e6))
+    def accurate(x: float) -> None:
+        assert abs(arb(float(np.cos(x))) - arb(x).cos()) < 2.0**-50
+        assert abs(arb(float(np.sin(x))) - arb(x).sin()) < 2.0**-50
+        assert abs(arb(float(np.arctan2(x, 0.37))) - arb.atan2(arb(x), arb(0.37))) < 2.0**-50
+
+    accurate()
 
 
 @given(interval_and_point(st.floats(-1e3, 1e3)))

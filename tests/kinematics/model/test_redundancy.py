@@ -9,6 +9,7 @@ from scipy.optimize import least_squares as reference
 from kinematics import InvalidShape, InvalidValue, Redundant3T1R
 from kinematics.model.joint_redundancy import fault_signatures, least_squares, signature_angles
 from tests.kinematics.robots.redundant_3t1r.redundant_by_hand import ByHand, box, random_geometry, reachable
+from tests.sizes import few_or_many
 
 ROBOT = Redundant3T1R()
 
@@ -108,8 +109,9 @@ def test_sound_encoders_are_not_accused():
 
 
 @pytest.mark.parametrize("joint", [0, 1, 4, 5])
-def test_a_faulty_outer_encoder_is_named_and_the_pose_saved(joint):
-    poses = poses_of(6_000, seed=10 + joint)
+@few_or_many(1_500, 6_000)
+def test_a_faulty_outer_encoder_is_named_and_the_pose_saved(joint, count):
+    poses = poses_of(count, seed=10 + joint)
     check = ROBOT.check_encoders(faulty(ROBOT.inverse(poses), joint, seed=20 + joint))
     assert not check.consistent.any()
     assert check.suspects[:, joint].all()  # never another one alone
@@ -123,9 +125,10 @@ def test_a_faulty_outer_encoder_is_named_and_the_pose_saved(joint):
 
 
 @pytest.mark.parametrize("joint", [2, 3])
-def test_faulty_middle_encoders_are_never_taken_for_each_other(joint):
+@few_or_many(1_500, 6_000)
+def test_faulty_middle_encoders_are_never_taken_for_each_other(joint, count):
     """Both are suspected; only where no angle at all fits the wrong one is it named, and then rightly."""
-    poses = poses_of(6_000, seed=30 + joint)
+    poses = poses_of(count, seed=30 + joint)
     check = ROBOT.check_encoders(faulty(ROBOT.inverse(poses), joint, seed=40 + joint))
     seen = ~check.consistent
     assert seen.mean() > 0.99  # where the arm is level with the turn its fault hides in the angle
@@ -137,9 +140,10 @@ def test_faulty_middle_encoders_are_never_taken_for_each_other(joint):
 
 
 @pytest.mark.parametrize(("size", "named"), [(0.05, 0.98), (0.3, 0.95), (3.0, 0.0)])
-def test_a_large_fault_is_never_cleared(size, named):
+@few_or_many(100, 600)
+def test_a_large_fault_is_never_cleared(size, named, count):
     """Of 0.3 m it is still named; where metres leave no pose to look from, nobody is, rather than the wrong one."""
-    poses = poses_of(600, seed=6, margin=0.1)
+    poses = poses_of(count, seed=6, margin=0.1)
     for joint in range(6):
         check = ROBOT.check_encoders(ROBOT.inverse(poses) + size * np.eye(6)[joint])
         assert check.suspects[:, joint].all()

@@ -23,10 +23,12 @@ from kinematics import (
 from kinematics.dynamics.actuators import to_actuators
 from kinematics.multibody.mjcf import mjcf
 from tests.kinematics.multibody.mujoco_model import MAIN, OpenTree, cycle, loaded, with_uniform_rods
+from tests.sizes import later
 
 PAYLOAD = 1.3
 EACH = pytest.mark.parametrize("kind", MAIN, ids=lambda kind: kind.__name__)
 RODS = pytest.mark.parametrize("uniform", [False, True], ids=["split rods", "uniform rods"])
+RODS_LATER = pytest.mark.parametrize("uniform", [later(False), True], ids=["split rods", "uniform rods"])
 
 
 def robot_of(kind, uniform, **drives):
@@ -43,7 +45,7 @@ def motions(robot, count, seed):
 
 
 @EACH
-@RODS
+@RODS_LATER
 def test_loops_close_in_mujoco_at_every_pose(kind, uniform):
     robot = robot_of(kind, uniform)
     poses = motions(robot, 20, seed=1)[0]
@@ -68,7 +70,7 @@ def test_open_trees_inertia_and_bias_projected_by_our_jacobians_give_our_torques
 
 
 @pytest.mark.parametrize("kind", [Delta, Hexa, Planar3PRR, Planar3RRR], ids=lambda kind: kind.__name__)
-@RODS
+@RODS_LATER
 def test_links_that_follow_from_the_bodies_close_in_mujoco_and_need_our_torques(kind, uniform):
     robot = robot_of(kind, uniform)
     rng, n = np.random.default_rng(5), len(robot.pose_names)
@@ -99,7 +101,7 @@ def test_each_torque_is_mujocos_on_its_own_joint_and_a_share_of_the_platforms(ki
 
 
 @EACH
-@RODS
+@RODS_LATER
 def test_simulation_driven_by_our_torques_alone_follows_the_cycle(kind, uniform):
     """No controller: 0.4 s there and back, 10 micrometres at most; with the wrong payload it is lost."""
     robot, step = robot_of(kind, uniform, gear_ratio=2.0, motor_inertia=1e-4), 1e-4
@@ -123,7 +125,7 @@ def test_simulation_driven_by_our_torques_alone_follows_the_cycle(kind, uniform)
 
 
 @EACH
-@RODS
+@RODS_LATER
 def test_a_robot_let_go_keeps_its_energy(kind, uniform):
     robot = robot_of(kind, uniform)
     model, data = loaded(robot, np.array(robot.home) + 0.02, PAYLOAD)

@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.studies.command_line import SMALL, SmallRun, linkwright
+from tests.sizes import later
+from tests.studies.command_line import SMALL, SmallRun, linkwright, linkwright_apart
 from trajectory import read_setpoints
 
 
@@ -67,9 +68,10 @@ def test_a_run_proves_its_requirements_and_shows_it(small_run: SmallRun) -> None
 
 
 def test_a_run_is_reproducible_from_the_study_alone(small_run: SmallRun, tmp_path: Path) -> None:
+    """By another process, which has run nothing before."""
     again = tmp_path / "study.toml"
     again.write_text(SMALL)
-    assert linkwright("run", again, "--out", tmp_path / "out").returncode == 0
+    assert linkwright_apart("run", again, "--out", tmp_path / "out").returncode == 0
     for name in ("optimum.toml", "cycle.csv", "certificates/J_q.npz"):
         assert (tmp_path / "out" / name).read_bytes() == (small_run[0] / "out" / name).read_bytes()
 
@@ -105,7 +107,7 @@ main()
 """
 
 
-@pytest.mark.parametrize("after", [0, 1])
+@pytest.mark.parametrize("after", [later(0), 1])
 def test_an_interrupt_ends_a_run_at_once_even_inside_the_solver(tmp_path: Path, after: int) -> None:
     """Once IPOPT has begun to iterate, and ten iterations or a problem later."""
     call = [sys.executable, "-u", "-c", LOUD, "run", "heli4", "--out", str(tmp_path / "out")]

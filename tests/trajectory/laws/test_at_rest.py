@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from kinematics import Heli4, inverse_dynamics
+from tests.sizes import later
 from trajectory import AdeptCycle, Limits, PathBeyondLimit, RoundedPath, jerk_limited, motion_of, time_optimal
 
 Law = Callable[..., object]
@@ -31,7 +32,7 @@ def test_a_weight_beyond_the_torque_at_an_end_is_refused_with_its_torque(
     assert abs(caught.value.found) == pytest.approx(np.abs(end).max(), rel=1e-6)
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", [time_optimal, later(jerk_limited)])
 def test_a_torque_just_above_the_weight_at_both_ends_is_timed(robot: Heli4, path: AdeptCycle, law: Law) -> None:
     with pytest.raises(PathBeyondLimit) as caught:
         law(robot, path, limits(law, torque=2.0), 1.0)

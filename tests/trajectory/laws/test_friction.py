@@ -10,6 +10,7 @@ import pytest
 
 from kinematics import DriveTrain, Heli4, InvalidValue, inverse_dynamics
 from kinematics.dynamics.drive_torque import GRAVITY
+from tests.sizes import later
 from trajectory import AdeptCycle, Limits, LimitsExceeded, TimedPath, repair, time_optimal, verify
 
 
@@ -57,7 +58,14 @@ def test_viscous_friction_is_refused_by_name_where_torque_is_limited(path: Adept
     assert time_optimal(robot, path, replace(limits, torque=None, acceleration=500.0), 1.0).duration > 0
 
 
-@pytest.mark.parametrize("drives", [{"coulomb": 8.0}, {"viscous": 0.5}, {"coulomb": 5.0, "viscous": 0.3}])
+@pytest.mark.parametrize(
+    "drives",
+    [
+        later({"coulomb": 8.0}),
+        later({"viscous": 0.5}),
+        {"coulomb": 5.0, "viscous": 0.3},
+    ],
+)
 def test_the_repair_stretches_as_little_as_friction_lets_it(timed: TimedPath, drives: dict[str, float]) -> None:
     robot = rough(**drives)
     slower = timed.stretched(1.05)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from kinematics import Delta, DriveTrain, GoughStewart, Heli4, Mechanism, inverse_dynamics
+from tests.sizes import later
 from trajectory import (
     Limits,
     Part,
@@ -62,7 +63,7 @@ def test_a_meander_with_small_corners_beats_a_smoothed_time_optimal_law() -> Non
     assert bound < duration(parts) < 0.58
 
 
-@pytest.mark.parametrize(("seed", "share"), [(1, 0.25), (2, 0.1), (3, 0.02)])
+@pytest.mark.parametrize(("seed", "share"), [later(1, 0.25), later(2, 0.1), (3, 0.02)])
 def test_twelve_random_corners_are_timed_little_above_the_law_without_jerk(seed: int, share: float) -> None:
     path = random_corners(seed, 12, share)
     parts = timed(Heli4(), path, HELI4, 1.0)

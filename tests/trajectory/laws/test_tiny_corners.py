@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from kinematics import Heli4, inverse_dynamics
+from tests.sizes import later
 from trajectory import Limits, Part, RoundedPath, TimedPath, jerk_limited, pieces, repair, time_optimal
 from trajectory.laws.jerk import refinement
 
@@ -24,7 +25,7 @@ def with_a_rest(robot: Heli4, path: RoundedPath) -> float:
     return sum(jerk_limited(robot, half, LIMITS, 0.5).duration for half in halves)
 
 
-@pytest.mark.parametrize("blend", [1e-9, 4e-8, 1e-6])
+@pytest.mark.parametrize("blend", [later(1e-9), 4e-8, later(1e-6)])
 def test_a_tiny_corner_is_passed_within_every_limit_sooner_than_with_a_rest_in_it(robot: Heli4, blend: float) -> None:
     path = cornered(robot, blend)
     found = repair(robot, jerk_limited(robot, path, LIMITS, 0.5), LIMITS, 0.5)
@@ -76,6 +77,7 @@ def test_where_nothing_else_is_found_a_motion_rests_in_the_middle(
     assert sooner.duration < found.duration < 2.0 * sooner.duration
 
 
+@pytest.mark.long
 def test_both_laws_time_corners_of_nanometres_beside_wide_ones(robot: Heli4) -> None:
     rng = np.random.default_rng(23)
     places = rng.uniform((-0.2, -0.2, -0.85), (0.2, 0.2, -0.65), (6, 3)).tolist()

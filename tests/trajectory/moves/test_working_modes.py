@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from kinematics import Delta, GoughStewart, Hexa, Mechanism, Planar3PRR, Planar3RPR, Planar3RRR, inverse_dynamics
+from tests.sizes import later
 from trajectory import Limits, RoundedPath, plan_move, repair, time_optimal
 
 SIX = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -20,7 +21,7 @@ def cycle_time(robot: Mechanism, poses: list[list[float | None]], blends: list[f
     return repair(robot, time_optimal(robot, path, limits, 0.2), limits, 0.2).motion.duration
 
 
-@pytest.mark.parametrize(("kind", "height"), [(Delta, 0.7), (Hexa, 0.54)])
+@pytest.mark.parametrize(("kind", "height"), [(Delta, 0.7), later(Hexa, 0.54)])
 def test_a_cycle_above_the_drives_takes_as_long_as_its_mirror_image_below(kind: Any, height: float) -> None:
     """Without a torque limit gravity does not matter; elbows stay outward on both sides."""
     angles = [0.0] * (len(kind.pose_names) - 3)

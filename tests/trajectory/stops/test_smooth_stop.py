@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from kinematics import DriveTrain, Heli4, Mechanism, Peppermill, Redundant3T1R
+from tests.sizes import later
 from trajectory import (
     AdeptCycle,
     EmergencyStop,
@@ -51,12 +52,13 @@ def motion(robot: Heli4, path: AdeptCycle) -> TimedMotion:
     return repair(robot, jerk_limited(robot, path, LIMITS, 1.0), LIMITS, 1.0).motion
 
 
-@pytest.fixture(scope="module")
-def stops(robot: Heli4, motion: TimedMotion) -> list[EmergencyStop]:
+@pytest.fixture(scope="module", params=["few", later("many")])
+def stops(request: pytest.FixtureRequest, robot: Heli4, motion: TimedMotion) -> list[EmergencyStop]:
     """From knots, from just before and after them, from next to both ends and from anywhere."""
-    knots = np.quantile(motion.times, (0.145, 0.6), method="nearest")
+    shares, anywhere = {"few": ((0.6,), 1), "many": ((0.145, 0.6), 4)}[request.param]
+    knots = np.quantile(motion.times, shares, method="nearest")
     at = [1e-6 * motion.duration, *knots, *knots * (1 - 1e-9), *knots * (1 + 1e-9), (1 - 1e-6) * motion.duration]
-    at += list(np.random.default_rng(5).uniform(0.0, motion.duration, 4))
+    at += list(np.random.default_rng(5).uniform(0.0, motion.duration, anywhere))
     return [emergency_stop(robot, motion, t, LIMITS, 1.0) for t in at]
 
 
@@ -92,7 +94,10 @@ def test_no_knot_of_the_motion_is_hidden(stops: list[EmergencyStop], motion: Tim
 
 @pytest.mark.parametrize(
     ("way", "jerk", "starts"),
-    [(AdeptCycle(), 1e6, (0.05719, 0.05979, 0.06)), (Reversed(AdeptCycle()), 1e5, (0.01820958, 0.08155))],
+    [
+        (AdeptCycle(), 1e6, (0.05719, 0.05979, 0.06)),
+        later(Reversed(AdeptCycle()), 1e5, (0.01820958, 0.08155)),
+    ],
     ids=["high jerk", "way back"],
 )
 def test_knots_are_no_jumps_of_the_acceleration(
@@ -168,22 +173,24 @@ def test_an_acceleration_that_does_not_continue_the_motion_fails_the_jerk_limit(
     assert "start speed" in found.failures
 
 
-def test_the_jerk_costs_way_and_time_and_the_less_the_higher_its_limit(robot: Heli4, motion: TimedMotion) -> None:
-    for share in (0.25, 0.8):
-        start = share * motion.duration
-        shortest = emergency_stop(robot, motion, start, replace(LIMITS, jerk=None), 1.0)
-        ways, times = [], []
-        for jerk in (1e5, 3e5, 1e8):
-            stop = emergency_stop(robot, motion, start, replace(LIMITS, jerk=jerk), 1.0)
-            ways.append((stop.motion.pace.position[-1] - start) / (shortest.motion.pace.position[-1] - start))
-            times.append(stop.duration / shortest.duration)
-        assert ways[0] > ways[1] > ways[2] >= 1.0
-        assert times[0] > times[1] > times[2] >= 1.0
-        assert ways[2] < 1.05
-        assert times[2] < 1.1
+@pytest.mark.parametrize("share", [later(0.25), 0.8])
+def test_the_jerk_costs_way_and_time_and_the_less_the_higher_its_limit(
+    robot: Heli4, motion: TimedMotion, share: float
+) -> None:
+    start = share * motion.duration
+    shortest = emergency_stop(robot, motion, start, replace(LIMITS, jerk=None), 1.0)
+    ways, times = [], []
+    for jerk in (1e5, 3e5, 1e8):
+        stop = emergency_stop(robot, motion, start, replace(LIMITS, jerk=jerk), 1.0)
+        ways.append((stop.motion.pace.position[-1] - start) / (shortest.motion.pace.position[-1] - start))
+        times.append(stop.duration / shortest.duration)
+    assert ways[0] > ways[1] > ways[2] >= 1.0
+    assert times[0] > times[1] > times[2] >= 1.0
+    assert ways[2] < 1.05
+    assert times[2] < 1.1
 
 
-@pytest.mark.parametrize("most", [None, 10.0, 8.0])
+@pytest.mark.parametrize("most", [None, 10.0, later(8.0)])
 def test_in_a_straight_cruise_it_is_the_closed_form(most: float | None) -> None:
     """All six carriages move as the platform does along their rails: +-jerk, and the acceleration's limit between."""
     speed, jerk, law = 1.0, 200.0, s_law(1.0, 60.0, 0.5)
@@ -206,8 +213,9 @@ TABLES = {
 }
 
 
+@pytest.mark.parametrize("share", [later(0.3), 0.6])
 @pytest.mark.parametrize("name", TABLES)
-def test_every_limit_of_other_drives_is_kept_too(name: str) -> None:
+def test_every_limit_of_other_drives_is_kept_too(name: str, share: float) -> None:
     """A law of few knots, and limits that it just keeps, all kinds of them."""
     robot: Mechanism
     robot, middle = TABLES[name]
@@ -225,10 +233,9 @@ def test_every_limit_of_other_drives_is_kept_too(name: str) -> None:
         no_load_speed=2.0 * peaks["joint speed"],
         rms_torque=1e-3,  # of whole ways, which a stop is none of
     )
-    for share in (0.3, 0.6):
-        stop = emergency_stop(robot, motion, share * motion.duration, limits, 0.5)
-        assert 0.9 < max(stop.verification.proved.values()) <= 1.0
-        assert stop.verification.proved.keys() >= {"tool acceleration", "torque at speed", "joint jerk"}
+    stop = emergency_stop(robot, motion, share * motion.duration, limits, 0.5)
+    assert 0.9 < max(stop.verification.proved.values()) <= 1.0
+    assert stop.verification.proved.keys() >= {"tool acceleration", "torque at speed", "joint jerk"}
 
 
 def test_a_motion_whose_acceleration_steps_is_not_stopped_within_a_jerk_limit(robot: Heli4, timed: TimedPath) -> None:

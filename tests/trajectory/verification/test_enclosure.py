@@ -4,18 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 
 from kinematics import DriveTrain, Heli4
+from tests.sizes import later
 from trajectory import AdeptCycle, Limits, Path, Reversed, TimedPath, jerk_limited, motion_of, time_optimal
 from trajectory.verification.enclosure import slack
 
+Parts = Callable[[TimedPath, int], tuple[np.ndarray, np.ndarray]]
 
-def parts(timed: TimedPath, count: int) -> tuple[np.ndarray, np.ndarray]:
-    edges = timed.times[:-1, None] + np.diff(timed.times)[:, None] * np.linspace(0.0, 1.0, count + 1)
+
+def parts_of(timed: TimedPath, count: int, most: int = 1_000_000) -> tuple[np.ndarray, np.ndarray]:
+    """Starts and ends of `count` equal parts of each interval of the law, or of `most` about of its intervals."""
+    chosen = slice(None, None, 1 + timed.times.size // most)
+    starts, lasting = timed.times[:-1][chosen, None], np.diff(timed.times)[chosen, None]
+    edges = starts + lasting * np.linspace(0.0, 1.0, count + 1)
     return edges[:, :-1].ravel(), edges[:, 1:].ravel()
+
+
+@pytest.fixture(scope="module", params=[500, later(1_000_000)])
+def parts(request: pytest.FixtureRequest) -> Parts:
+    return partial(parts_of, most=request.param)
 
 
 @pytest.fixture(scope="module", params=["S", "jerk", "toppra", "sharp corners, way back"])
@@ -35,7 +47,9 @@ def timed(
     return time_optimal(robot, Reversed(AdeptCycle(blend=0.004, turn=-2.0, heading=0.4)), limits, 1.0, 1000)
 
 
-def test_every_instant_lies_within_the_slack_around_the_middle_of_its_part(robot: Heli4, timed: TimedPath) -> None:
+def test_every_instant_lies_within_the_slack_around_the_middle_of_its_part(
+    robot: Heli4, timed: TimedPath, parts: Parts
+) -> None:
     low, high = parts(timed, 4 if timed.times.size > 100 else 500)
     bounds = slack(robot, timed, 1.0, low, high).motion
     middle = motion_of(robot, timed.at(0.5 * low + 0.5 * high), 1.0)
@@ -48,13 +62,13 @@ def test_every_instant_lies_within_the_slack_around_the_middle_of_its_part(robot
                 assert (np.abs(value - centre) <= bound * (1 + 1e-9) + 1e-9 * np.abs(centre).max()).all()
 
 
-def test_the_slack_shrinks_with_the_parts(robot: Heli4, timed: TimedPath) -> None:
+def test_the_slack_shrinks_with_the_parts(robot: Heli4, timed: TimedPath, parts: Parts) -> None:
     coarse, fine = (slack(robot, timed, 1.0, *parts(timed, count)).motion for count in (20, 80))
     for a, b in ((coarse.torque, fine.torque), (coarse.joints.third, fine.joints.third)):
         assert np.median(b) < 0.3 * np.median(a)
 
 
-def test_the_fourth_derivative_stays_within_bounds_that_close_in_with_the_parts(timed: TimedPath) -> None:
+def test_the_fourth_derivative_stays_within_bounds_that_close_in_with_the_parts(timed: TimedPath, parts: Parts) -> None:
     widths = []
     for count in (4, 40):
         low, high = parts(timed, count)
@@ -70,7 +84,7 @@ def test_the_fourth_derivative_stays_within_bounds_that_close_in_with_the_parts(
 
 def test_the_slack_of_a_saturated_torque_is_a_small_share_of_it(robot: Heli4, path: AdeptCycle, limits: Limits) -> None:
     timed = time_optimal(robot, path, limits, 1.0, 1000)
-    low, high = parts(timed, 10)
+    low, high = parts_of(timed, 10)
     middle, bounds = motion_of(robot, timed.at(0.5 * low + 0.5 * high), 1.0), slack(robot, timed, 1.0, low, high).motion
     assert (np.abs(middle.torque) + bounds.torque).max() < 1.0001 * np.abs(middle.torque).max()
 
@@ -80,7 +94,7 @@ def test_friction_is_bounded_where_a_joint_turns_back(
 ) -> None:
     rubbing = Heli4(inertia=Heli4.Inertia(drive_train=DriveTrain(coulomb=3.0, viscous=0.4)))
     timed = s_curve(path, 0.2)
-    low, high = parts(timed, 500)
+    low, high = parts_of(timed, 500)
     bounds = slack(rubbing, timed, 1.0, low, high).motion
     middle = motion_of(rubbing, timed.at(0.5 * low + 0.5 * high), 1.0)
     for share in (0.01, 0.3, 0.99):
@@ -90,7 +104,7 @@ def test_friction_is_bounded_where_a_joint_turns_back(
 
 
 def test_the_mean_torque_of_a_part_is_off_that_in_its_middle_by_the_second_order(
-    robot: Heli4, timed: TimedPath
+    robot: Heli4, timed: TimedPath, parts: Parts
 ) -> None:
     errors = []
     for count in (10, 20):

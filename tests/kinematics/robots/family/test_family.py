@@ -49,7 +49,7 @@ def test_poses_of_the_workspace_come_back(kind, count):
 
 
 @EACH
-@few_or_many(20, 1000)
+@few_or_many(8, 1000)
 def test_round_trips_of_random_geometries(kind, count):
     rng = np.random.default_rng(2)
     for _ in range(count):

@@ -6,6 +6,7 @@ import pytest
 from kinematics import Delta, Hexa, Par4, Planar3PRR, Planar3RPR, Planar3RRR
 from kinematics.robots.planar.forward import placements
 from tests.kinematics.robots.family.family_by_hand import PLANAR, ByHand, poses_of, random_geometry, robots
+from tests.sizes import few_or_many
 
 EACH_PLANAR = pytest.mark.parametrize("kind", PLANAR, ids=lambda kind: kind.__name__)
 DEG = np.pi / 180
@@ -69,7 +70,8 @@ def wide(kind, rng):
 
 
 @EACH_PLANAR
-def test_planar_modes_are_those_that_newtons_method_finds_from_everywhere(kind):
+@few_or_many(4, 13)
+def test_planar_modes_are_those_that_newtons_method_finds_from_everywhere(kind, count):
     rng, counts = np.random.default_rng(1), set()
     for trial in range(30):
         robot = wide(kind, rng)
@@ -79,16 +81,17 @@ def test_planar_modes_are_those_that_newtons_method_finds_from_everywhere(kind):
         modes = robot.assembly_modes(joints)
         counts.add(len(modes))
         assert_same_set(robot, joints, modes, multistart(robot, joints, starts_of(robot, 300, trial)), False)
-        if len(counts) == 3 and trial > 12:
+        if len(counts) == 3 and trial >= count:
             break
     assert 4 in counts
     assert counts <= {2, 4, 6}
 
 
 @EACH_PLANAR
-def test_planar_modes_come_in_pairs_and_hold_the_pose_that_gave_the_joints(kind):
+@few_or_many(40, 150)
+def test_planar_modes_come_in_pairs_and_hold_the_pose_that_gave_the_joints(kind, count):
     rng, counted, most = np.random.default_rng(2), 0, 0
-    for trial in range(150):
+    for trial in range(count):
         robot = wide(kind, rng)
         for pose in poses_of(kind, 4, trial):
             joints = robot.inverse(pose)
@@ -98,7 +101,7 @@ def test_planar_modes_come_in_pairs_and_hold_the_pose_that_gave_the_joints(kind)
             counted, most = counted + 1, max(most, len(modes))
             assert len(modes) % 2 == 0
             assert np.abs(modes - pose).max(axis=1).min() < 1e-9
-    assert counted > 100
+    assert counted > count
     assert most == 6
 
 
@@ -188,9 +191,10 @@ def strange_par4(rng):
     )
 
 
-def test_par4_modes_are_those_that_newtons_method_finds_from_everywhere():
+@few_or_many(8, 25)
+def test_par4_modes_are_those_that_newtons_method_finds_from_everywhere(count):
     rng, counts = np.random.default_rng(6), []
-    for trial in range(25):
+    for trial in range(count):
         robot = strange_par4(rng)
         joints = rng.uniform(0, np.pi, 4)
         modes = robot.assembly_modes(joints)

@@ -8,6 +8,7 @@ import pytest
 from kinematics import Array, GoughStewart, LostPaths
 from kinematics.robots.gough_stewart import assembly_modes as modes
 from tests.kinematics.robots.gough_stewart.gough_stewart_by_hand import anywhere, matrix_of, random_points
+from tests.sizes import later
 
 Geometry = GoughStewart.Geometry
 
@@ -19,7 +20,7 @@ def count(base: Array, platform: Array) -> int:
     return modes.solver((base / unit).tobytes(), (platform / unit).tobytes()).count
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", [0, *(later(seed) for seed in range(1, 5)), 5])
 def test_a_generic_real_platform_has_forty_complex_poses(seed: int) -> None:
     rng = np.random.default_rng(seed)
     assert count(random_points(rng, planar=seed > 3), random_points(rng, planar=seed > 3)) == 40
@@ -36,7 +37,7 @@ def merged(points: Array, *groups: tuple[int, ...]) -> Array:
     return points
 
 
-@pytest.mark.parametrize("planar", [True, False])
+@pytest.mark.parametrize("planar", [True, later(False)])
 @pytest.mark.parametrize(
     ("on_base", "on_platform", "expected"),
     [
@@ -60,7 +61,10 @@ def test_number_of_poses_depends_on_which_joint_centres_coincide(
     assert count(base, platform) == expected
 
 
-@pytest.mark.parametrize("half_angles", [(0.1, 0.2), (0.2, 0.2), (0.3, 0.05), (0.4, 0.5)])
+@pytest.mark.parametrize(
+    "half_angles",
+    [(0.1, 0.2), (0.2, 0.2), later((0.3, 0.05)), later((0.4, 0.5))],
+)
 def test_layouts_of_the_builders_have_28_16_and_16_poses(half_angles: tuple[float, float]) -> None:
     base, platform = half_angles
     assert count(*points_of(Geometry.ssm(0.7, 0.3, base, platform))) == 28

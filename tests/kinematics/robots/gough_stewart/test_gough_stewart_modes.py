@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from kinematics import Array, GoughStewart, LostPaths, SelfMotion
@@ -23,6 +21,7 @@ from tests.kinematics.robots.gough_stewart.gough_stewart_by_hand import (
     random_robot,
     transform_of,
 )
+from tests.sizes import few_or_many
 
 Geometry = GoughStewart.Geometry
 
@@ -90,13 +89,14 @@ def test_dietmaiers_platform_has_forty_real_poses() -> None:
     assert apart.min() > 1e-3
 
 
-def test_a_known_pose_is_always_among_the_modes() -> None:
-    """96 random poses: the default robot, the octahedron, planar and spatial random ones, any frames."""
+@few_or_many(2, 12)
+def test_a_known_pose_is_always_among_the_modes(count: int) -> None:
+    """So many random poses of each: the default robot, the octahedron, planar and spatial random ones, any frames."""
     rng = np.random.default_rng(5)
     robots = [GoughStewart(), GoughStewart(Geometry.mssm()), GoughStewart(Geometry.tssm())]
     robots += [random_robot(rng, planar=k % 2 == 0) for k in range(5)]
     for robot in robots:
-        poses = anywhere(rng, 12)
+        poses = anywhere(rng, count)
         for pose, joints in zip(poses, robot.inverse(poses), strict=True):
             found = robot.assembly_modes(joints)
             assert nearest(found, pose) < 1e-8
@@ -104,13 +104,14 @@ def test_a_known_pose_is_always_among_the_modes() -> None:
             assert len(found) % 2 == 0
 
 
-def test_newtons_method_from_thousands_of_starts_finds_no_pose_that_is_missing() -> None:
+@few_or_many(1, 3)
+def test_newtons_method_from_thousands_of_starts_finds_no_pose_that_is_missing(count: int) -> None:
     """And it finds nearly all of them, so that the check has teeth."""
     rng = np.random.default_rng(6)
     reached = total = 0
     for robot in (GoughStewart(), GoughStewart(Geometry.mssm()), random_robot(rng), random_robot(rng, planar=True)):
         place = robot.geometry.in_reference_frame().mean(axis=0)
-        for pose in anywhere(rng, 3) + np.append(place, np.zeros(3)):
+        for pose in anywhere(rng, count) + np.append(place, np.zeros(3)):
             joints = robot.inverse(pose)
             modes_found = robot.assembly_modes(joints)
             starts = anywhere(rng, 2000) * [2.0, 2.0, 2.0, 1.0, 1.0, 1.0] + np.append(place, np.zeros(3))
@@ -245,9 +246,13 @@ def test_modes_do_not_depend_on_the_unit_of_length(scale: float) -> None:
         assert nearest(first, mode) < 1e-7
 
 
-@settings(max_examples=8)
-@given(st.integers(0, 2**32 - 1))
-def test_modes_move_with_the_frames(seed: int) -> None:
+@few_or_many(3, 20)
+def test_modes_move_with_the_frames(count: int) -> None:
+    for seed in range(count):
+        assert_modes_move_with_the_frames(seed)
+
+
+def assert_modes_move_with_the_frames(seed: int) -> None:
     rng = np.random.default_rng(seed)
     robot, w, t = random_robot(rng), random_frame(rng), random_frame(rng)
     g = robot.geometry
