@@ -25,7 +25,7 @@ from design.synthesis.exchange import rounded
 from design.synthesis.nlp import NlpSolution, Problem, active_sets, solve
 from design.synthesis.synthesis import _offenders, synthesise
 from kinematics import Delta, GoughStewart, Heli4, Hexa, InvalidValue, Peppermill, Redundant3T1R
-from tests.sizes import later
+from tests.sizes import few_or_many, later
 
 REGION = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-math.pi, math.pi))
 ROBOT = Heli4()
@@ -65,7 +65,8 @@ def test_an_optimum_from_a_coarse_sample_collapses_and_the_exchange_mends_it() -
     assert last.poses > first.poses
 
 
-def test_requirements_hold_between_the_poses_that_were_solved_on() -> None:
+@few_or_many(200_000, 500_000)
+def test_requirements_hold_between_the_poses_that_were_solved_on(count: int) -> None:
     requirements = (Requirement("J_q", 0.5), Requirement("internal_determinant", 0.5))
     found = synthesise(
         problem(("base_radius", 0.2, 0.45), ("platform_radius", 0.03, 0.08), requirements=requirements),
@@ -74,7 +75,7 @@ def test_requirements_hold_between_the_poses_that_were_solved_on() -> None:
         about=ABOUT,
     )
     for requirement in requirements:
-        denser = worst_poses(found.robot, REGION, requirement.margin, about=300_000)
+        denser = worst_poses(found.robot, REGION, requirement.margin, about=count)
         assert denser.value >= requirement.at_least
 
 
