@@ -3,7 +3,7 @@
 from design.synthesis.errors import SynthesisFailed
 from design.synthesis.exchange import worst_of
 from design.synthesis.nlp import Problem, active_sets
-from design.synthesis.starts import STARTS
+from design.synthesis.random_starts import STARTS
 from design.synthesis.synthesis import Synthesis, synthesise
 
 __all__ = [

@@ -16,7 +16,7 @@ from design.regions import Region
 from design.sampling import DENSE, WorstPoses
 from design.synthesis.exchange import Candidate, Exchange, Progress, Round
 from design.synthesis.nlp import NlpSolution, Problem
-from design.synthesis.starts import STARTS, reaching_starts, require_possible_sums
+from design.synthesis.random_starts import STARTS, reaching_starts, require_possible_sums
 from kinematics import Array, Mechanism, positive, whole
 
 SECONDS = 600.0

@@ -1,5 +1,6 @@
 """A mechanism's model: its definition, and everything that is derived from its loop closure."""
 
+from kinematics.model.abstract_margin import ClaimSymbols, Margin, Measure, ToShow, by_name, signed
 from kinematics.model.aspect import in_aspect, joined_to_home
 from kinematics.model.continuation import continued, polished, reached
 from kinematics.model.indices import (
@@ -12,7 +13,6 @@ from kinematics.model.indices import (
     sides,
 )
 from kinematics.model.joint_redundancy import BestFit, EncoderCheck, check_encoders, least_squares
-from kinematics.model.margin import ClaimSymbols, Margin, Measure, ToShow, by_name, signed
 from kinematics.model.mechanism import Mechanism
 from kinematics.model.programs import Build, Write
 from kinematics.model.symbolic_model import Model

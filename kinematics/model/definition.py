@@ -14,8 +14,8 @@ import casadi as ca
 
 from kinematics.arrays import Array
 from kinematics.machine import Bodies, GeometryRecord, InertiaRecord, JointRanges, PassiveJoint, Reference, Tree
+from kinematics.model.abstract_margin import Margin
 from kinematics.model.indices import FviBounds
-from kinematics.model.margin import Margin
 
 if TYPE_CHECKING:
     from kinematics.model.working_mode import Mode

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 
 from kinematics.model import indices
-from kinematics.model.margin import Measure
+from kinematics.model.abstract_margin import Measure
 from kinematics.model.programs import Build
 from kinematics.model.symbolic_model import Model
 

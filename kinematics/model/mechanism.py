@@ -16,10 +16,10 @@ from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.evaluation import BlockProgram, evaluate
 from kinematics.machine import GeometryRecord, InertiaRecord, JointRanges
 from kinematics.model import expressions
+from kinematics.model.abstract_margin import Margin, Measure
 from kinematics.model.continuation import forward_near
 from kinematics.model.definition import Definition
 from kinematics.model.indices import FviBounds, homogeneous
-from kinematics.model.margin import Margin, Measure
 from kinematics.model.programs import Write, program_of
 from kinematics.model.symbolic_model import Model, model_of
 from kinematics.model.working_mode import Mode, mode_at

@@ -15,7 +15,6 @@ from studies.building import robot_of
 from studies.committed.committed_proofs import known_certificates, proof_entries
 from studies.errors import Fault, KeyPath, StudyError, spelled
 from studies.stages import Outcome
-from studies.study_file import FILE as STUDY
 from studies.study_file import Study, TomlFile, changes, cycle_question, design_question, digest_of, read_toml
 
 FILE = "optimum.toml"
@@ -128,7 +127,7 @@ def read_optimum(path: Path) -> Optimum:
         StudyError: missing, not TOML, or a part missing or of the wrong kind, with its line.
     """
     if not path.is_file():
-        how = f"`linkwright run {path.parent / STUDY} --commit` writes it; --prototype works without it"
+        how = "`linkwright run STUDY --commit` writes it; --prototype works without it"
         raise StudyError([Fault(path, "", None, "no such file", f"the study's committed optimum: {how}")])
     optimum = Optimum((file := read_toml(path)).data, file)
     for key, kind, words in (("mechanism", str, "a name"), ("active", list, "a list"), *_tables()):

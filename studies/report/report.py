@@ -44,6 +44,7 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
         before=outcome.before,
         margin_columns=margin_columns(outcome),
         margins=margin_rows(outcome),
+        margin_words=_margin_words(outcome),
         proof_columns=PROOFS,
         proofs=proof_rows(outcome.proofs),
         sampled=next(iter(outcome.worst.values())).sampled,
@@ -59,6 +60,12 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
         stated=_stated(outcome.timing.setpoints.header) if outcome.timing else [],
         timing=outcome.timing,
     )
+
+
+def _margin_words(outcome: Outcome) -> list[tuple[str, str, str]]:
+    """Name, unit and meaning of each margin in the table."""
+    margins = outcome.robot.margins
+    return [(name, margins[name].unit, margins[name].words) for name in outcome.worst]
 
 
 def _geometry_rows(outcome: Outcome) -> list[tuple[str, str, str, str]]:

@@ -79,7 +79,7 @@ _ALL = (
         takes=("intervals",),
         refuses={
             Third: "its acceleration steps from one extreme to the other",
-            Sloped: "its equations cannot hold a torque limit that falls with the speed",
+            Sloped: "its equations cannot hold a limit that falls with the speed",
             Squared: "it limits the whole way, not each instant",
         },
         leaves_out=("jerk",),  # without a jerk limit a motion is only less smooth; the other limits protect the drives

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics import Array, Mechanism, Value, from_actuators, rounded_up
-from trajectory.limits import Limits, MeanSquareLimit, Use, mean_squares, uses
+from trajectory.limits import Limit, Limits, MeanSquareLimit, Use, mean_squares, uses
 from trajectory.motions import Motion, PoseMotion, TimedMotion, motion_of
 from trajectory.verification.limit_proof import proved_use
 from trajectory.verification.sampling import integrals, settled_parts, way_of
@@ -44,6 +44,7 @@ class Peak(NamedTuple):
     """
 
     quantity: str
+    unit: str
     joint: str | None
     time: float | None
     value: float
@@ -112,7 +113,7 @@ class Verification(Value):
         def row(p: Peak) -> tuple[str, ...]:
             proved = "" if (most := self.proved.get(p.quantity)) is None else rounded_up(most, 6)
             return (
-                p.quantity,
+                f"{p.quantity} [{p.unit}]",
                 number(p.value),
                 number(p.limit),
                 number(p.ratio),
@@ -169,22 +170,26 @@ def _peaks(
     least = [float(limit.min()) for limit in infinite.values() if limit is not None]
     if jump <= _SMOOTH * max(np.abs(motion.joints.second).max(), *(times[-1, -1] * limit for limit in least), 0.0):
         infinite = {}
-    peaks = [_peak(robot, times, limit.name, use) for limit, use in found.items() if limit not in infinite]
+    peaks = [_peak(robot, times, limit, use) for limit, use in found.items() if limit not in infinite]
     for limit, most in infinite.items():
         if most is not None:
-            peaks.append(Peak(limit.name, None, jump_time, math.inf, float(most.min()), math.inf))
+            peaks.append(Peak(limit.name, _unit(robot, limit), None, jump_time, math.inf, float(most.min()), math.inf))
     return tuple(peaks), tuple(
         f"{limit.name} left out: a joint acceleration jumps by {jump:.4g}, where the jerk is an impulse"
         for limit in infinite
     )
 
 
-def _peak(robot: Mechanism, times: Array, quantity: str, use: Use) -> Peak:
+def _peak(robot: Mechanism, times: Array, limit: Limit, use: Use) -> Peak:
     size = np.abs(use.value) if use.ratio is None else use.ratio
     where = np.unravel_index(int(size.argmax()), size.shape)
     joint = robot.actuator_names[where[-1]] if size.shape[-1] == len(robot.actuator_names) else None
     bound, ratio = (None, None) if use.limit is None else (float(use.limit[where]), float(size[where]))
-    return Peak(quantity, joint, float(times[where[:-1]]), float(use.value[where]), bound, ratio)
+    return Peak(limit.name, _unit(robot, limit), joint, float(times[where[:-1]]), float(use.value[where]), bound, ratio)
+
+
+def _unit(robot: Mechanism, limit: Limit) -> str:
+    return limit.fields[0].unit_for(robot.actuator_units)
 
 
 def _root_mean_square(timed: TimedMotion, times: Array, values: Array) -> Array:
@@ -200,7 +205,7 @@ def _rms_peak(
     size = rms if limit is None else rms / limit
     joint = int(size.argmax())
     bound, ratio = (None, None) if limit is None else (float(limit[joint]), float(size[joint]))
-    return Peak(mean.name, robot.actuator_names[joint], None, float(rms[joint]), bound, ratio)
+    return Peak(mean.name, _unit(robot, mean), robot.actuator_names[joint], None, float(rms[joint]), bound, ratio)
 
 
 def _jump(times: Array, acceleration: Array, first: Array) -> tuple[float, float]:

@@ -271,6 +271,6 @@ def test_a_peak_says_where_and_when(repaired: Repaired) -> None:
     assert torque.joint in ("q1", "q2", "q3", "q4")
     assert 0 <= torque.time <= repaired.motion.duration
     assert torque.value == pytest.approx(127.0, rel=2 * CLOSE)
-    assert found.rows()[2][0] == "torque"
+    assert found.rows()[2][0] == "torque [N m]"
     assert float(found.rows()[2][3]) <= float(found.rows()[2][4]) <= 1.0
     assert all(len(row) == 7 for row in found.rows())

@@ -95,7 +95,7 @@ class Disc:
 
 @dataclass(frozen=True, eq=False)
 class Third:
-    """sqrt(x) |by_z z + by_u u + by_x x| <= 1, (..., rows) each."""
+    """sqrt(x) |by_z z + by_u u + by_x x| <= 1, (..., rows) each; none of them from `Along.torque`."""
 
     by_z: Array
     by_u: Array

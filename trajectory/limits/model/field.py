@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,6 +31,12 @@ class LimitField(ABC):
     expected: str
     unit: str = ""
     required: bool = False
+
+    def unit_for(self, joint_units: Sequence[str]) -> str:
+        """The unit, of joints that all turn or all slide; else both units."""
+        turning, _, sliding = self.unit.partition(" or ")
+        kinds = set(joint_units)
+        return {frozenset({"rad"}): turning, frozenset({"m"}): sliding or turning}.get(frozenset(kinds), self.unit)
 
     @abstractmethod
     def checked(self, value: Any) -> Any:

@@ -51,8 +51,10 @@ class Limit(ABC):
         fields: its fields of `Limits`; all of them are set, or none.
         both: the words of the error if only some of the fields are set.
         kind: the kind of its constraint on the pace along a way.
-        exact: whether every motion within the limit keeps its constraint; false if the constraint is stricter.
-        pace_power: the power of the pace with which the quantity grows, about; 0 if no pace changes it.
+        exact: whether every motion within the limit keeps its constraint; false if the constraint is stricter. The
+            emergency stop then leaves it out, is verified against the limit all the same, and may fail.
+        pace_power: the power of the pace with which the quantity grows, about; 0 if no pace changes it. The default
+            stretch and single moves use it.
         of_torque: whether the torque is part of it.
         not_for_moves: why a single move from pose to pose does not keep it; empty if it does.
     """

@@ -99,7 +99,11 @@ class Margin(ABC):
 
     @abstractmethod
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:
-        """(k,) expressions in the symbols `pose` and `geometry` of the model. Each must be at least the bound."""
+        """(k,) expressions in the symbols `pose` and `geometry` of the model. Each must be at least the bound.
+
+        A new margin needs no other method. Interval arithmetic knows sums, products, quotients, roots, sines, cosines,
+        `atan2`, `fabs`, `fmin` and `fmax`. Write a modulus or a minimum as the outermost operation: it is then split.
+        """
 
     def limbs(self, robot: Mechanism) -> list[int] | None:  # noqa: ARG002
         """(k,) the limb of each component, counted from 1; None if components do not belong to limbs."""
