@@ -22,7 +22,7 @@ demo: $(READY)  ## the whole way: optimise Heli4, check it, time its cycle, writ
 test: lint types  ## ruff, mypy and the tests
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not long" --ignore=tests/bench
 
-test-long: $(READY)  ## random trials and statistics, some minutes
+test-long: $(READY)  ## further cases of the tests, random trials and statistics; about 20 minutes
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m long --ignore=tests/bench
 
 lint: $(READY)

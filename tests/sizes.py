@@ -1,4 +1,4 @@
-"""Sizes of a random test: a small one for `make test`, and a large one for `make test-long`."""
+"""Which cases of a test `make test` runs, and which ones are for `make test-long`."""
 
 from __future__ import annotations
 

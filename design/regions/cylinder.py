@@ -25,7 +25,7 @@ class Cylinder(Region):
     def __init__(self, radius: float, **coordinates: Interval) -> None:
         self.radius = number(radius)
         if not self.radius >= 1.0 / LARGEST:
-            raise InvalidRegion("radius", radius, "a length > 0 m, not above 1e100")
+            raise InvalidRegion("radius", radius, "a length > 0 m whose square is a number")
         for name in ("x", "y"):
             if name in coordinates:
                 raise InvalidRegion(name, coordinates[name], "no bounds, as the radius bounds x and y")

@@ -28,7 +28,7 @@ class DriveTrain:
         viscous: [N m s/rad] or [N s/m].
 
     Raises:
-        InvalidValue: a value is not finite, negative, or a gear ratio of 0.
+        InvalidValue: a value is infinite, NaN or negative, or a gear ratio is 0.
     """
 
     gear_ratio: PerActuator = 1.0

@@ -25,7 +25,7 @@ class FieldKind:
     """
 
     dimension: str
-    expected: str = "finite values"
+    expected: str = "finite numbers"
     above: float | None = None
     zero: bool = True
 
@@ -37,15 +37,23 @@ class FieldKind:
 
     @property
     def condition(self) -> str:
-        """What `allows` asks, as the end of a sentence; "" where it allows every number."""
-        if not self.zero:
-            return ", 0 left out"
-        return "" if self.above is None else f", above {self.above:g}"
+        """What `allows` asks of a number, as the end of a sentence; "" where it allows every number."""
+        return self._above or ("" if self.zero else " other than 0")
+
+    @property
+    def condition_on_pairs(self) -> str:
+        """What `allows` asks of the interval from low to high, as the end of a sentence."""
+        return self._above or ("" if self.zero else ", with no 0 from low to high")
+
+    @property
+    def _above(self) -> str:
+        unit = " m" if self.above and self.dimension == "length" else ""
+        return "" if self.above is None else f", above {self.above:g}{unit}"
 
 
 def length(default: float | tuple[float, ...] | Points, *, minimum: float | None = 0.0, doc: str) -> Any:
     """A length in metres, greater than `minimum` (None: any sign)."""
-    expected = "finite values" if minimum is None else f"a length > {minimum:g} m"
+    expected = "finite numbers" if minimum is None else f"a length > {minimum:g} m"
     return _field(default, FieldKind("length", expected, minimum), doc)
 
 

@@ -1,7 +1,4 @@
-"""v_w, f_w and the FVI: the worst isotropic speed and force, and both over the wanted ones; Shayya et al.
-
-(39), (40).
-"""
+"""v_w, f_w and the FVI: worst isotropic speed and force, and both over the wanted ones; Shayya et al. (39), (40)."""
 
 from __future__ import annotations
 

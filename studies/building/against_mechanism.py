@@ -191,12 +191,11 @@ def _dimensions(field: GeometryField) -> Key:
 
 
 def _bounds(field: GeometryField) -> Key:
-    pairs = (
-        f", or a list of {math.prod(field.shape)} such pairs, one an entry; low = high fixes an entry, but not all"
-        if field.shape
-        else ""
-    )
-    return _key_of(field, f"low < high{field.kind.condition}{pairs}")
+    pair = f"low < high{field.kind.condition_on_pairs}"
+    if not field.shape:
+        return _key_of(field, pair)
+    count = math.prod(field.shape)
+    return _key_of(field, f"a list of {count} pairs, each {pair}; low = high fixes an entry, but not all")
 
 
 def _key_of(field: GeometryField, expected: str) -> Key:

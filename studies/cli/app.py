@@ -31,6 +31,23 @@ app = typer.Typer(
 )
 
 
+def _version(asked: bool) -> None:
+    if asked:
+        from importlib.metadata import version
+
+        print(f"linkwright {version('linkwright')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _top(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Design fast parallel robots, verify the design, and write the set-points that their drives run."""
+
+
 @app.command("list")
 def list_(json: JsonOption = False) -> None:
     """List the mechanisms, the studies, the timing laws and the formats of drive files.

@@ -15,9 +15,8 @@ import typer
 def ended_by(app: typer.Typer) -> None:
     """Run the command line, and leave the process with its exit status."""
     if not sys.warnoptions:
-        warnings.simplefilter(
-            "ignore"
-        )  # warnings of libraries are for programmers; our own checks find the faults and report them
+        # Warnings of libraries are for programmers; our own checks find the faults and report them.
+        warnings.simplefilter("ignore")
     signal.signal(signal.SIGINT, _interrupted)
     signal.signal(signal.SIGTERM, _interrupted)
     try:
@@ -35,9 +34,13 @@ def ended_by(app: typer.Typer) -> None:
 
 def _fail(message: str, status: int, data: dict[str, Any]) -> NoReturn:
     """Print the message on standard error. With --json, also print an object on standard output."""
+    if message:  # none where the help is all that there is to say
+        print(f"linkwright: {message}", file=sys.stderr)
     if "--json" in sys.argv:
-        print(json.dumps({"error": message, "exit_status": status, **data}, indent=2))
-    print(f"linkwright: {message}", file=sys.stderr)
+        try:
+            print(json.dumps({"error": message, "exit_status": status, **data}, indent=2), flush=True)
+        except BrokenPipeError:  # the reader has read enough; Python would complain again at the end
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     sys.exit(status)
 
 

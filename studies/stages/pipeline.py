@@ -9,7 +9,7 @@ from typing import Any
 
 from design import Certificate, Problem, Region, Synthesis, WorstPoses, active_sets, synthesise, worst_of
 from kinematics import LinkwrightError, Mechanism
-from studies.building import problem_of, region_of
+from studies.building import home_of, problem_of, region_of
 from studies.errors import Failed, RequirementFailed
 from studies.stages.cycle_stage import Timing, margins_on, time_cycle
 from studies.stages.proofs import Proof, Question, prove_all
@@ -114,6 +114,8 @@ def designed(study: Study, robot: Mechanism | None, progress: Progress, solver_s
         solver_status: the solver's last status for the given robot.
     """
     problem, region = problem_of(study), region_of(study)
+    if study.home is not None and study.optimise is None:
+        home_of(problem.robot)
     if robot is None and study.optimise is not None:
         with stage("optimise", progress, study.budget.optimise):
             found = optimise(study, progress)
@@ -164,4 +166,7 @@ def certified(outcome: Outcome, known: Mapping[str, Certificate], progress: Prog
         proofs = prove_all(outcome.question, outcome.worst, known, progress)
     found = replace(outcome, proofs=proofs)
     found.require_all()
+    required = {requirement.margin for requirement in outcome.problem.requirements}
+    if missing := [p.claim for p in proofs if p.certificate.margin in required and p.certificate.status != "proved"]:
+        progress(Lasting(f"not proved, only sampled: {', '.join(missing)}"))
     return found

@@ -77,7 +77,7 @@ def _spelling(file: TomlFile, path: KeyPath) -> KeyPath:
 
 
 def _of_home(file: TomlFile, error: HomeOutOfReach) -> StudyError:
-    given = next((path for path in file.lines if path[0] == "home"), None)
+    given = next((path for path in file.lines if path[0] == "home" and len(path) > 1), None)
     found = spelled(file.value(given)) if given else f"no home, so the default {error.shown}"
     return StudyError([file.fault(given or ("home",), found, f"a home in reach ({error.cause})")])
 

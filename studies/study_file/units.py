@@ -48,6 +48,7 @@ def unit_ending(spelling: str, names: Iterable[str]) -> tuple[str, str]:
 
 
 def value_in_si(value: Any, suffix: str) -> Any:
+    """A number, or a list of lists of numbers, in SI; anything else as it is. A suffix "" is SI already."""
     if isinstance(value, list):
         return tuple(value_in_si(entry, suffix) for entry in value)
     if isinstance(value, bool) or not isinstance(value, int | float):

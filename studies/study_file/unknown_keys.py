@@ -4,7 +4,7 @@ from studies.study_file.keys import Key, Table, closest, hint
 
 
 def known_keys(spelling: str, table: Table) -> tuple[str, list[str]]:
-    """The words for an unknown key: which keys there are. And the key that is most likely meant, if there is one."""
+    """Words that tell which keys there are; and the key that the unknown one most likely means, if there is one."""
     near = closest([spelling], _all_spellings(table))
     words = f"one of {', '.join(sorted(table.keys))}{hint(near)}"
     meant = near if near is None or near in table.keys else near.rsplit("_", 1)[0]

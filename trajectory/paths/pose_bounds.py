@@ -41,8 +41,9 @@ class PoseBounds:
 
     @property
     def _length(self) -> float:
-        """The largest distance of a bound from 0 [m]."""
-        return float(np.abs([self.low[: self.places], self.high[: self.places]]).max())
+        """The largest distance of a finite bound from 0 [m]."""
+        bounds = np.abs([self.low[: self.places], self.high[: self.places]])
+        return float(bounds[np.isfinite(bounds)].max(initial=0.0))
 
     def rows(self, points: Sequence[ca.SX]) -> tuple[ca.SX, Array, Array]:
         """Expressions that have to be between two bounds for the Bezier points (4, n) of a cubic to be inside.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from importlib.metadata import distribution, packages_distributions
@@ -203,3 +204,22 @@ def test_all_four_packages_belong_to_this_distribution() -> None:
     owners = packages_distributions()
     for name in ("kinematics", "design", "trajectory", "studies"):
         assert set(owners[name]) == {"linkwright"}
+
+
+def test_the_version_is_told_and_no_command_at_all_is_answered_by_the_help_alone() -> None:
+    assert linkwright("--version").stdout.startswith("linkwright ")
+    ended = linkwright()
+    assert (ended.returncode, ended.stderr) == (2, "")
+    assert "--version" in ended.stdout
+
+
+def test_an_error_whose_reader_has_left_is_no_traceback(tmp_path: Path) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    command = [sys.executable, "-c", "from studies.cli import main; main()", "run", str(tmp_path), "--json"]
+    ended = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(writer)
+    assert ended.returncode == 2
+    assert ended.stderr.startswith("linkwright: ")
+    assert "Traceback" not in ended.stderr
+    assert "BrokenPipe" not in ended.stderr

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -107,10 +108,39 @@ def test_an_answer_that_did_not_converge_is_not_returned(
 ) -> None:
     good = np.hstack([motion.pose, motion.velocity, motion.acceleration, motion.jerk])
     answer = Answer("Maximum_Iterations_Exceeded", good, motion.duration)
-    monkeypatch.setattr(law, "_FINER", 1)  # a programme of finer intervals takes seconds to build
     monkeypatch.setattr(IntervalProgram, "solve", lambda *_: answer)
     with pytest.raises(TimingFailed, match="Maximum_Iterations_Exceeded"):
         free_motion(robot, path, JERK, 1.0, 16)
+
+
+def test_a_motion_that_breaks_a_limit_between_its_instants_is_sought_on_twice_as_many_intervals(
+    robot: Heli4, path: AdeptCycle, motion: PoseSpline, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tried = []
+
+    def on_intervals(*given: Any) -> PoseSpline:
+        tried.append(given[5])
+        if given[5] == 16:
+            law._require_kept(robot, replace(JERK, torque=120.0), 1.0, motion, {})
+        return motion
+
+    monkeypatch.setattr(law, "_on_intervals", on_intervals)
+    assert free_motion(robot, path, JERK, 1.0, 16) is motion
+    assert tried == [16, 32]
+
+
+@pytest.mark.parametrize(
+    "limits",
+    [JERK, replace(JERK, speed=14.0), replace(JERK, jerk=9e4), replace(JERK, position=(-1.0, 0.0))],
+    ids=["out of reach", "speed", "jerk", "position"],
+)
+def test_no_limit_may_be_broken_between_the_instants_nor_a_pose_be_out_of_reach(
+    robot: Heli4, motion: PoseSpline, limits: Limits
+) -> None:
+    law._require_kept(robot, JERK, 1.0, motion, {})
+    below = replace(motion, pose=motion.pose - [0.0, 0.0, 1.0, 0.0]) if limits is JERK else motion
+    with pytest.raises(TimingFailed, match="between its instants"):
+        law._require_kept(robot, limits, 1.0, below, {})
 
 
 def test_what_cannot_be_done_is_refused(robot: Heli4, path: AdeptCycle, straight: type) -> None:

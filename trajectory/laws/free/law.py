@@ -1,9 +1,9 @@
-"""The law `free`: path and timing together. The tool is free outside the clearance arch. All limits are kept, with
-jerk.
+"""The law `free`: path and timing together. The tool is free outside the clearance arch.
 
 The pose's third derivative is constant in each of equal intervals of time. IPOPT finds it together with the duration
-(`interval_nlp`). Limits are kept at samples of each interval, and jerk on both sides of every knot. `repair` corrects a
-small excess between the samples. The search starts from the time-optimal law on the cycle's own path.
+(`interval_nlp`). All limits are kept at samples of each interval, and jerk on both sides of every knot. `repair`
+corrects a small excess between the samples. With a larger one the motion is sought again on shorter intervals. The
+search starts from the time-optimal law on the cycle's own path.
 """
 
 from __future__ import annotations
@@ -23,15 +23,19 @@ from trajectory.limits import Cap, Constraint, Disc, Limits, Linear, Place, Squa
 from trajectory.motions import PoseSpline
 from trajectory.paths import TOLERANCE, Arch, Path, PoseBounds, bezier_points, places, require_poses_of
 
-_AT_INSTANTS = (Place, Cap, Linear, Disc)
+_AT_INSTANTS = (Cap, Linear, Disc)
 _AT = (0.0, 0.5)  # places in an interval where the limits of speed, acceleration and torque are required
-_ARCH_AT = 480  # about so many instants where the tool stays outside the arch: at most a tenth of a blend apart
+_ARCH_AT = 480  # about so many instants where the tool stays outside the arch
 _PROOF = 100_000  # parts of the motion; over each of them the arch is proved to be kept
-_FINER = 2  # factor for more intervals if they are too wide
-_CLOSER = 8  # instants of an interval where the limits are measured again
-_NEARLY = 5e-3  # excess over a limit, relative to it, that the repair corrects
+_FINER = 2  # times as many intervals, where they are too wide
+_CLOSER = 8  # parts of an interval; at their ends the limits are measured again
+_NEARLY = 5e-3  # excess over a limit, relative to it, that the repair corrects; it corrects none of a position
 _SLOWER = (1.1, 1.15, 1.3)  # durations of the guess over the time-optimal law; they are tried in turn
 _ROOM = 0.25  # times the path's extent: the pose may leave the path's box by this
+
+
+class _TooWide(TimingFailed):
+    """What was found on these intervals does not hold between the samples. Shorter ones may help."""
 
 
 def free_motion(
@@ -54,14 +58,15 @@ def free_motion(
 
     Raises:
         InvalidValue: the path or the pose is of another kind, or there is no jerk limit.
-        TimingFailed: the solver did not converge.
+        TimingFailed: the solver did not converge, or the motion breaks a limit or enters the arch between the samples,
+            on twice as many intervals too.
     """
     require_poses_of(robot, path)
     LAWS["free"].require_kept(limits)
     arch = Arch.of(path)
     try:
         return _on_intervals(robot, path, arch, limits, payload, intervals, within)
-    except TimingFailed:
+    except _TooWide:
         return _on_intervals(robot, path, arch, limits, payload, _FINER * intervals, within)
 
 
@@ -77,7 +82,7 @@ def _on_intervals(
     """The fastest motion on `intervals` intervals.
 
     Raises:
-        TimingFailed: the solver did not converge, or the arch or a limit needs shorter intervals.
+        TimingFailed: the solver did not converge; as `_TooWide`, the arch or a limit needs shorter intervals.
     """
     program = _program(robot, arch, limits, payload, intervals, within)
     guess, end, duration = _guess(robot, path, limits, payload, intervals)
@@ -99,28 +104,32 @@ def _on_intervals(
     p, v, a, j = (r / answer.duration**order for order, r in enumerate(np.split(answer.start, 4, axis=1)))
     motion = PoseSpline("free", times, p, v, a, j, ends)
     _require_clear(arch, motion)
-    if (used := _between(robot, limits, payload, motion)) > 1.0 + _NEARLY:
-        raise TimingFailed("free", asked, f"between its instants the motion uses {used:.4g} times a limit")
+    _require_kept(robot, limits, payload, motion, asked)
     return motion
 
 
-def _between(robot: Mechanism, limits: Limits, payload: float, motion: PoseSpline) -> float:
-    """The largest use of a limit, over the limit, at closer instants than those where it is required."""
+def _require_kept(
+    robot: Mechanism, limits: Limits, payload: float, motion: PoseSpline, asked: dict[str, object]
+) -> None:
+    """Raise `_TooWide` if a limit of instants is broken at closer instants than those where it is required."""
     _, at = motion.within(np.linspace(0.0, 1.0, _CLOSER + 1))
-    rates = [rate.reshape(-1, rate.shape[-1]).T for rate in (at.pose, at.velocity, at.acceleration)]
-    limited, _, _ = _limited(robot, limits, payload)
-    return float(np.abs(np.array(limited.map(rates[0].shape[1])(*rates))).max())
+    rates = [rate.reshape(-1, rate.shape[-1]).T for rate in (at.pose, at.velocity, at.acceleration, at.jerk)]
+    placed, limited, jerks, _ = _limited(robot, limits, payload)
+    for function, inputs, allowed in ((placed, 3, 1.0), (limited, 3, 1.0 + _NEARLY), (jerks, 4, 1.0 + _NEARLY)):
+        used = np.abs(np.array(function.map(rates[0].shape[1])(*rates[:inputs]))).max(initial=0.0)
+        if not used <= allowed:  # NaN, out of reach, is none
+            raise _TooWide("free", asked, f"between its instants the motion uses {used:.4g} times a limit")
 
 
 def _require_clear(arch: Arch, motion: PoseSpline) -> None:
-    """Raise TimingFailed if the tool may enter the arch between the samples."""
+    """Raise `_TooWide` if the tool may enter the arch between the samples."""
     parts = math.ceil(_PROOF / (motion.times.size - 1))
     half = np.diff(motion.times)[:, None, None] / (2 * parts)
     _, at = motion.within((np.arange(parts) + 0.5) / parts)
     away = half * (np.abs(at.velocity) + half * (np.abs(at.acceleration) + half * np.abs(at.jerk)))
     if not arch.kept_clear(at.pose[..., :3].reshape(-1, 3), away[..., :3].reshape(-1, 3)):
         asked = {"intervals": motion.times.size - 1, "tolerance of the arch over the blend": TOLERANCE}
-        raise TimingFailed("free", asked, "the tool enters the clearance arch between the samples")
+        raise _TooWide("free", asked, "the tool enters the clearance arch between the samples")
 
 
 def _guess(robot: Mechanism, path: Path, limits: Limits, payload: float, intervals: int) -> tuple[Array, Array, float]:
@@ -150,7 +159,7 @@ def _constraints(
 ) -> IntervalConstraints:
     n = len(robot.pose_names)
     start, duration = ca.SX.sym("start", 4 * n), ca.SX.sym("duration")
-    limited, jerk, squares = _limited(robot, limits, payload)
+    placed, limited, jerk, squares = _limited(robot, limits, payload)
     rows: list[ca.SX] = []
     mean = ca.SX(0, 1)
     low: list[float] = []
@@ -165,7 +174,7 @@ def _constraints(
         state = _within(start, share / intervals, n)
         rates = [rate / duration**order for order, rate in enumerate(state)]
         if share < 1.0:
-            add(limited(*rates[:3]), -1.0, 1.0)
+            add(ca.vertcat(placed(*rates[:3]), limited(*rates[:3])), -1.0, 1.0)
             square = squares(*rates[:3]) / (len(_AT) * intervals)
             mean = square if not mean.numel() else mean + square
         add(jerk(*rates), -1.0, 1.0)
@@ -187,8 +196,8 @@ def _within(start: ca.SX, t: float, n: int) -> list[ca.SX]:
 
 
 @lru_cache(maxsize=4)
-def _limited(robot: Mechanism, limits: Limits, payload: float) -> tuple[ca.Function, ca.Function, ca.Function]:
-    """Three functions: values to keep between -1 and 1 at an instant; the joints' jerk; squares of the torque."""
+def _limited(robot: Mechanism, limits: Limits, payload: float) -> tuple[ca.Function, ...]:
+    """Values to keep between -1 and 1: of the place, of the motion, of the joints' jerk; and squares of the torque."""
     model = robot.model()
     rates = velocity, acceleration, jerk = [
         ca.SX.sym(name, model.pose.shape[0]) for name in ("velocity", "acceleration", "jerk")
@@ -201,11 +210,12 @@ def _limited(robot: Mechanism, limits: Limits, payload: float) -> tuple[ca.Funct
     def kept(*kinds: type[Constraint]) -> ca.SX:
         return ca.vertcat(ca.SX(0, 1), *(one.symbolic(motion, limits) for one in limits if issubclass(one.kind, kinds)))
 
-    instants, jerks, squares = kept(*_AT_INSTANTS), kept(Third), kept(Squared) ** 2
+    rows = kept(Place), kept(*_AT_INSTANTS), kept(Third), kept(Squared) ** 2
     fixed = ca.SX(robot.geometry.vector())
     inputs = [model.pose, velocity, acceleration]
-    limited, jerks, squares = (ca.substitute(v, model.geometry, fixed) for v in (instants, jerks, squares))
+    placed, limited, jerks, squares = (ca.substitute(v, model.geometry, fixed) for v in rows)
     return (
+        ca.Function("placed", inputs, [placed], {"cse": True}),
         ca.Function("limited", inputs, [limited], {"cse": True}),
         ca.Function("jerk", [*inputs, jerk], [jerks], {"cse": True}),
         ca.Function("squares", inputs, [squares], {"cse": True}),
