@@ -77,12 +77,13 @@ def test_where_nothing_else_is_found_a_motion_rests_in_the_middle(
     assert sooner.duration < found.duration < 2.0 * sooner.duration
 
 
-@pytest.mark.long
-def test_both_laws_time_corners_of_nanometres_beside_wide_ones(robot: Heli4) -> None:
+@pytest.mark.parametrize("count", [4, later(6)])
+def test_both_laws_time_corners_of_nanometres_beside_wide_ones(robot: Heli4, count: int) -> None:
     rng = np.random.default_rng(23)
     places = rng.uniform((-0.2, -0.2, -0.85), (0.2, 0.2, -0.65), (6, 3)).tolist()
     poses = tuple((*place, angle) for place, angle in zip(places, (0.0, None, 0.3, None, None, 0.5), strict=True))
-    path = cornered(robot, 2e-8, 1e-2, 3e-6, 5e-8, poses=poses)
+    blends = (2e-8, 1e-2, 3e-6, 5e-8)[: count - 2]
+    path = cornered(robot, *blends, poses=(*poses[: count - 1], poses[-1]))
     without = Limits(speed=5.0, acceleration=200.0, torque=300.0)
     (way,) = path.evaluate(np.linspace(0.0, path.length, 200), 0)
     assert np.abs(inverse_dynamics(robot, 0.5, way, 0 * way, 0 * way)).max() < 300.0
