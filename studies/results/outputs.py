@@ -59,14 +59,13 @@ def write_optimum(outcome: Outcome, folder: OutputFolder) -> Written:
 
 
 def write_run(outcome: Outcome, folder: OutputFolder, command: str, beside: OutputFolder | None) -> Written:
-    """Write optimum, certificates, report and set-points.
+    """Write optimum, certificates, report and set-points of an outcome of `certified`, which meets every requirement.
 
     `beside` is the study's folder if optimum and certificates go there too.
 
     Raises:
-        RequirementFailed, CannotWrite, FileInTheWay: as `write_optimum`.
+        CannotWrite, FileInTheWay: as `OutputFolder.write`.
     """
-    outcome.require_all()
     question = made_for(outcome.study, outcome.robot)
     optimum: Files = {"optimum": {**proof_files(outcome.proofs), FILE: optimum_of(outcome).text()}}
     written = folder.write({**optimum, **_report(outcome, command)}, question)
@@ -75,7 +74,6 @@ def write_run(outcome: Outcome, folder: OutputFolder, command: str, beside: Outp
 
 def write_report(outcome: Outcome, folder: OutputFolder, command: str) -> Written:
     """Write report and set-points; as `write_run`, without the optimum."""
-    outcome.require_all()
     return folder.write(_report(outcome, command), made_for(outcome.study, outcome.robot))
 
 
