@@ -1,6 +1,7 @@
 """What is wrong with a study file, and where."""
 
 import json
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -51,16 +52,22 @@ class StudyError(LinkwrightError):
 
 @dataclass(frozen=True)
 class Failed:
-    """A requirement that is not met: the wanted bound, the worst value found, and its pose (empty on a path)."""
+    """A requirement that is not met: the wanted bound, the worst value found, and its pose (empty on a path).
+
+    `place` is where the study asks for it: file, line and key; empty where no file does.
+    """
 
     margin: str
     at_least: float
     found: float
     pose: tuple[float, ...]
+    place: str = ""
 
     def __str__(self) -> str:
         where = f" at pose {_pose(self.pose)}" if self.pose else ""
-        return f"{self.margin}: found {self.found:.6g}{where}; expected at least {self.at_least:g}"
+        found = f"{self.found:.6g}" if math.isfinite(self.found) else "no value, as a limb cannot reach,"
+        at = f"{self.place}: " if self.place else ""
+        return f"{at}{self.margin}: found {found}{where}; expected at least {self.at_least:g}"
 
 
 class RequirementFailed(LinkwrightError):

@@ -4,9 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 
 from kinematics import InvalidField, LinkwrightError, UnreachablePose
-from studies.errors import ApproachFailed, Fault, HomeOutOfReach, KeyPath, StudyError, dotted, spelled
+from studies.errors import (
+    ApproachFailed,
+    Fault,
+    HomeOutOfReach,
+    KeyPath,
+    RequirementFailed,
+    StudyError,
+    dotted,
+    spelled,
+)
 from studies.study_file.toml_file import TomlFile
 from studies.study_file.units import SUFFIX
 from trajectory import LimitsExceeded, PathBeyondLimit, PathRefused, RoughPath, TimingFailed, UnsuitedPath
@@ -44,6 +54,8 @@ def told_at_key(file: TomlFile) -> Iterator[None]:
         raise StudyFailed(file, ("trajectory", "approach"), error) from error
     except HomeOutOfReach as error:
         raise _of_home(file, error) from error
+    except RequirementFailed as error:
+        raise RequirementFailed([replace(one, place=_required_at(file, one.margin)) for one in error.failed]) from error
     except PathBeyondLimit as error:
         raise StudyFailed(file, _spelling(file, ("trajectory", "limits", error.limit)), error) from error
     except InvalidField as error:
@@ -74,6 +86,16 @@ def _spelling(file: TomlFile, path: KeyPath) -> KeyPath:
     """The key as the file spells it, perhaps with the suffix of a unit."""
     suffixed: list[KeyPath] = [(*path[:-1], f"{path[-1]}_{suffix}") for suffix in SUFFIX.values()]
     return next((key for key in (path, *suffixed) if key in file.lines), path)
+
+
+def _required_at(file: TomlFile, margin: str) -> str:
+    """File, line and key of the requirement of a margin, which may be named with where it fails; "" without one."""
+    name, rows = margin.partition(" ")[0], file.data.get("requirement", [])
+    number = next((i for i, row in enumerate(rows) if row.get("margin") == name), None)
+    if number is None:
+        return ""
+    key: KeyPath = ("requirement", number, "at_least")
+    return f"{file.path}:{file.line(key)}: {dotted(key)}"
 
 
 def _of_home(file: TomlFile, error: HomeOutOfReach) -> StudyError:

@@ -101,7 +101,7 @@ def test_a_model_without_a_cycle_starts_in_the_region(tmp_path: Path) -> None:
         (
             ("[region]", "[home]\nz_mm = -900\n[region]"),
             2,
-            r"study\.toml:9: home.*: found .*; expected a home in reach",
+            r"study\.toml:10: home.z_mm: found -900; expected a home in reach",
         ),
         (("pick_mm = [-25", "pick_mm = [-28"), 0, ""),
     ],
