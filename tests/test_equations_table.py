@@ -14,8 +14,9 @@ import kinematics
 from kinematics import MECHANISMS
 
 ROOT = Path(__file__).parents[1]
-INDEX = ROOT / "docs" / "equations.md"
-PAGES = sorted((ROOT / "docs").glob("equations_*.md"))
+FOLDER = ROOT / "docs" / "equations"
+INDEX = FOLDER / "index.md"
+PAGES = sorted(set(FOLDER.glob("*.md")) - {INDEX})
 EACH_PAGE = pytest.mark.parametrize("page", [INDEX, *PAGES], ids=lambda page: page.stem)
 CODE = re.compile(r"`([^`]+)`")
 TEST = re.compile(r"^(?:(?P<file>[\w/]+\.py): )?(?P<name>test_\w+)$")
@@ -156,23 +157,23 @@ def test_every_erratum_stands_on_its_mechanisms_page_with_the_same_test():
     }
     assert {row["source"] for row in errata} == set(page_of) & {"Heli4", "Redundant3T1R", "Peppermill", "GoughStewart"}
     for row in errata:
-        text = (ROOT / "docs" / page_of[row["source"]]).read_text()
+        text = (FOLDER / page_of[row["source"]]).read_text()
         assert [name for name in CODE.findall(row["test"]) if name not in text] == []
 
 
 @pytest.mark.parametrize(
     ("page", "equation", "last"),
     [
-        ("equations_heli4.md", r"\((\d+)\)", 59),
-        ("equations_redundant_3t1r.md", r"\((\d+)\)", 40),
-        ("equations_peppermill.md", r"\((\d+)\)", 48),
-        ("equations_peppermill.md", r"\(A\.(\d)\)", 5),
-        ("equations_gough_stewart.md", r"\[8\.(\d+)\]", 26),
+        ("heli4.md", r"\((\d+)\)", 59),
+        ("redundant_3t1r.md", r"\((\d+)\)", 40),
+        ("peppermill.md", r"\((\d+)\)", 48),
+        ("peppermill.md", r"\(A\.(\d)\)", 5),
+        ("gough_stewart.md", r"\[8\.(\d+)\]", 26),
     ],
 )
 def test_no_equation_is_left_out(page, equation, last):
     covered = set()
-    for row in rows_with(ROOT / "docs" / page, "equation"):
+    for row in rows_with(FOLDER / page, "equation"):
         for first, other in re.findall(rf"{equation}(?:[-\u2013]{equation})?", row["equation"]):
             covered |= set(range(int(first), int(other or first) + 1))
     assert covered == set(range(1, last + 1))
@@ -193,7 +194,7 @@ def test_no_equation_is_left_out(page, equation, last):
     ],
 )
 def test_a_name_that_does_not_exist_is_seen(cell, unknown):
-    assert unknown_functions(cell, ROOT / "docs" / "equations_heli4.md") == unknown
+    assert unknown_functions(cell, FOLDER / "heli4.md") == unknown
 
 
 def test_a_row_with_a_cell_too_few_is_seen():

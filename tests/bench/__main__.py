@@ -21,8 +21,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         tables = {"bench": _bench_table(_benchmarks(Path(folder) / "bench.json"))}
         tables["run"] = _run_table(_study(Path(folder)))
-        (ROOT / "docs").mkdir(exist_ok=True)
-        (ROOT / "docs" / "heli4.png").write_bytes((Path(folder) / "mechanism.png").read_bytes())
+        (ROOT / "docs" / "pictures").mkdir(exist_ok=True)
+        (ROOT / "docs" / "pictures" / "heli4.png").write_bytes((Path(folder) / "mechanism.png").read_bytes())
     for name, table in tables.items():
         write_between(ROOT / "README.md", name, table)
     certificates.main()

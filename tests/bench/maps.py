@@ -85,7 +85,7 @@ def _write(name: str, panels: list[tuple[str, str]], found: dict[str, LevelSet],
             axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.12), frameon=False, fontsize=7)
             label_axes(axes, PLANE, ())
             axes.set(title=f"{case}: {what}", xlim=(0, 0.34), ylim=(0, HIGHEST))
-        (DOCS / name).write_bytes(png(figure))
+        (DOCS / "pictures" / name).write_bytes(png(figure))
 
 
 def _panel(
@@ -125,7 +125,7 @@ def _write_between(found: dict[str, LevelSet], pose: np.ndarray) -> None:
         dip = math.degrees(pose[3])
         right.set(xlim=(dip - 28.0, dip + 28.0), ylim=(0.995, 1.025))
         right.legend(frameon=False)
-        (DOCS / "map_between_angles.png").write_bytes(png(figure))
+        (DOCS / "pictures" / "map_between_angles.png").write_bytes(png(figure))
 
 
 def _table(found: dict[str, LevelSet]) -> list[str]:
