@@ -22,6 +22,7 @@ from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import determinant, distinct, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, joined_to_home, polished
 from kinematics.robots.par4.forward import Halves, candidates
+from kinematics.robots.par4.links import links
 from kinematics.robots.par4.pi_joint import PI_JOINT
 from kinematics.robots.shared import (
     ArmInertia,
@@ -133,6 +134,8 @@ class Par4(RotaryLimbs):
         det J_x is +- b / k ((l1 x l2) x (l3 x l4)) . e, l_i the rods and e the horizontal normal of the bars.
         """
         return ca.repmat(g.arm_length * g.rod_length, 4, 1), g.bar_length / g.amplification * g.rod_length**4
+
+    link_tree = links
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, rods, halves, bars, tool, payload."""

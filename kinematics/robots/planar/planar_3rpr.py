@@ -7,7 +7,22 @@ from types import SimpleNamespace
 
 import casadi as ca
 
-from kinematics.machine import TURN, Bodies, JointRanges, Pair, Particle, Rotor, length
+from kinematics.machine import (
+    AXES,
+    ORIGIN,
+    TURN,
+    Bodies,
+    Connection,
+    JointRanges,
+    Link,
+    Pair,
+    Particle,
+    Reference,
+    Rotor,
+    Tree,
+    TreeJoint,
+    length,
+)
 from kinematics.model import FviBounds, Mode
 from kinematics.robots.planar.planar import Planar, PlanarGeometry, PlanarInertia, triangle
 
@@ -79,10 +94,26 @@ class Planar3RPR(Planar):
         """1 for J_q; `determinant_scale` for det J_x."""
         return ca.SX.ones(3), Planar.determinant_scale(g)
 
+    def link_tree(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, reference: Reference) -> Tree:
+        """Each leg turns about its base joint and slides along itself. Its angle counts from the reference."""
+        base, ends = self.base_points(g), self.platform_points(pose, g)
+        chain, connections = [], []
+        for i, name in enumerate(self.joint_names):
+            along = (ends[:, i] - base[:, i]) / ca.norm_2(ends[:, i] - base[:, i])
+            before = reference(along)
+            turned = ca.atan2(ca.cross(before, along)[2], ca.dot(before, along))
+            turn = TreeJoint(f"leg {i + 1}", "hinge", AXES[2], base[:, i], turned)
+            chain.append(Link(f"leg {i + 1}", None, (turn, TreeJoint(name, "slide", along, ORIGIN, joints[i]))))
+            connections.append(Connection((f"leg {i + 1}", "platform"), ends[:, i]))
+        place = ca.vertcat(pose[:2], 0)
+        slides = (TreeJoint("xy"[k], "slide", AXES[k], ORIGIN, pose[k]) for k in range(2))
+        chain.append(Link("platform", None, (*slides, TreeJoint("theta", "hinge", AXES[2], place, pose[2]))))
+        return Tree(tuple(chain), connections=tuple(connections))
+
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
-        """Drives that the joints move; platform and half of each leg, the other half staying at its base joint."""
+        """Drives that the joints move; platform, and half of each leg at its end. The other half stays on the base."""
         i, ends, bodies = self.inertia, self.platform_points(pose, g), Bodies(self.inertia.rod_middle)
         bodies.rotors.extend(Rotor(i.drive, joints[k]) for k in range(3))
-        bodies.particles.extend(Particle("platform", i.link_mass / 2, ends[:, k]) for k in range(3))
+        bodies.particles.extend(Particle(f"leg {k + 1}", i.link_mass / 2, ends[:, k]) for k in range(3))
         self.platform_bodies(pose, g, payload, bodies)
         return bodies

@@ -21,6 +21,7 @@ from kinematics import (
     inverse_dynamics,
 )
 from kinematics.dynamics.actuators import to_actuators
+from kinematics.model.definition import Definition
 from kinematics.multibody.mjcf import mjcf
 from tests.kinematics.multibody.mujoco_model import MAIN, OpenTree, cycle, loaded, with_uniform_rods
 from tests.sizes import later
@@ -69,9 +70,11 @@ def test_open_trees_inertia_and_bias_projected_by_our_jacobians_give_our_torques
         assert np.abs(found - wrench).max() < 1e-6 * np.abs(wrench).max()
 
 
-@pytest.mark.parametrize("kind", [Delta, Hexa, Planar3PRR, Planar3RRR], ids=lambda kind: kind.__name__)
+@pytest.mark.parametrize(
+    "kind", [Delta, Hexa, Par4, Planar3PRR, Planar3RPR, Planar3RRR], ids=lambda kind: kind.__name__
+)
 @RODS_LATER
-def test_links_that_follow_from_the_bodies_close_in_mujoco_and_need_our_torques(kind, uniform):
+def test_the_other_mechanisms_close_in_mujoco_and_need_our_torques_too(kind, uniform):
     robot = robot_of(kind, uniform)
     rng, n = np.random.default_rng(5), len(robot.pose_names)
     pose = robot.home + rng.uniform(-0.02, 0.02, (6, n)) * robot.geometry.size
@@ -166,11 +169,23 @@ def test_friction_of_the_drives_is_mujocos(kind):
     np.testing.assert_allclose([-forces[name] for name in robot.joint_names], onto_joints, rtol=1e-6, atol=1e-6)
 
 
+class Par4OfBodies(Par4):
+    """Its links as they follow from the bodies, which they do not."""
+
+    link_tree = Definition.link_tree
+
+
+class Planar3RPROfBodies(Planar3RPR):
+    """The same."""
+
+    link_tree = Definition.link_tree
+
+
 def test_what_cannot_be_exported_is_named():
     with pytest.raises(InvalidValue, match=r"half 1, which moves in another way; expected .* the hook `link_tree`"):
-        mjcf(Par4(), Par4().home)
+        mjcf(Par4OfBodies(), Par4().home)
     with pytest.raises(InvalidValue, match="no link that q1 moves"):
-        mjcf(Planar3RPR(), Planar3RPR().home)
+        mjcf(Planar3RPROfBodies(), Planar3RPR().home)
     with pytest.raises(UnreachablePose, match="limb"):
         mjcf(Heli4(), (0.0, 0.0, -3.0, 0.0))
     with pytest.raises(InvalidValue, match="payload: found -1"):

@@ -87,11 +87,15 @@ def test_a_mechanism_without_a_model_is_named(
 ) -> None:
     study = tmp_path / "par4" / "study.toml"
     study.parent.mkdir()
+    (study.parent / "unclear.py").write_text(
+        "from kinematics import Par4\nfrom kinematics.model.definition import Definition\n"
+        "class Unclear(Par4):\n    link_tree = Definition.link_tree\n"
+    )
     study.write_text(
-        'title = "Par4"\nmechanism = "Par4"\n[region]\nkind = "box"\n'
+        'title = "Par4"\nmechanism = "unclear:Unclear"\n[region]\nkind = "box"\n'
         "x = [-0.1, 0.1]\ny = [-0.1, 0.1]\nz = [-0.8, -0.7]\ntheta = 0\n"
         '[[requirement]]\nmargin = "reach"\nat_least = 0.0\n'
     )
-    ended = linkwright("export", study, "--out", tmp_path / "delta.xml")
+    ended = linkwright("export", study, "--out", tmp_path / "model.xml", "--allow-code")
     assert ended.returncode == 2
-    assert "links of Par4 for simulators: found half 1" in ended.stderr
+    assert "links of Unclear for simulators: found half 1" in ended.stderr
