@@ -147,7 +147,7 @@ def path_picture(poses: Array, time: Array, names: Sequence[str]) -> bytes:
 
 
 def motion_picture(time: Array, rows: Sequence[tuple[str, Array, Array | None]], joints: Sequence[str]) -> bytes:
-    """Joint quantities over time, one panel each, with dashed limits.
+    """Joint quantities over time, one panel each, with dotted limits.
 
     Args:
         time: (k,) [s].
@@ -162,7 +162,7 @@ def motion_picture(time: Array, rows: Sequence[tuple[str, Array, Array | None]],
                 axes.plot(1e3 * time, values[:, k], _DASHES[k % 2], color=_COLOURS[k % 6], label=name, linewidth=1.2)
             for limit in () if limits is None else np.unique(np.abs(limits)):
                 for sign in (-1, 1):
-                    axes.axhline(sign * limit, color="#b00020", linestyle="--", linewidth=0.9)
+                    axes.axhline(sign * limit, color="0.3", linestyle=":", linewidth=1.4)
             axes.set_ylabel(label)
         figure.legend(
             *panels[0].get_legend_handles_labels(), loc="outside upper right", ncols=len(joints), frameon=False

@@ -145,7 +145,7 @@ def _motion_pictures(timing: Timing) -> Pictures:
     ]
     return [
         (f"Path of the {timing.half_cycle_name.replace('_', ' ')}", plots.path_picture(pose, times, robot.pose_names)),
-        ("Joints on the way there; limits are dashed", plots.motion_picture(times, rows, robot.actuator_names)),
+        ("Joints on the way there; limits are dotted", plots.motion_picture(times, rows, robot.actuator_names)),
     ]
 
 
