@@ -38,7 +38,16 @@ from design.maps import (
 from design.regions import Box, Cylinder, Region
 from design.requirement import Bounds, Requirement, SumLimit
 from design.sampling import DENSE, Sweep, WorstPoses, sweep, worst_poses
-from design.synthesis import STARTS, Problem, Synthesis, SynthesisFailed, active_sets, synthesise, worst_of
+from design.synthesis import (
+    STARTS,
+    ImpossibleSum,
+    Problem,
+    Synthesis,
+    SynthesisFailed,
+    active_sets,
+    synthesise,
+    worst_of,
+)
 
 __all__ = [
     "DENSE",
@@ -52,6 +61,7 @@ __all__ = [
     "Certificate",
     "CertifiedRegion",
     "Cylinder",
+    "ImpossibleSum",
     "Index",
     "InvalidRegion",
     "InvalidSection",

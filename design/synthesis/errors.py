@@ -19,3 +19,13 @@ class SynthesisFailed(LinkwrightError):
         self.reason, self.status, self.best = reason, status, best
         seen = f"; best found: {best}" if best is not None else ""
         super().__init__(f"no optimum: {reason} (solver status: {status}){seen}")
+
+
+class ImpossibleSum(SynthesisFailed):
+    """A sum, by its place in the problem, is too large even with every variable at its lower bound."""
+
+    exit_status = 2
+
+    def __init__(self, number: int, reason: str) -> None:
+        self.number = number
+        super().__init__(reason, "not started")

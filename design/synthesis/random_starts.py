@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from design.synthesis.errors import SynthesisFailed
+from design.synthesis.errors import ImpossibleSum, SynthesisFailed
 from design.synthesis.nlp import Problem
 from kinematics import Array, InvalidGeometry, Mechanism, UnreachablePose
 
@@ -16,16 +16,15 @@ def require_possible_sums(problem: Problem) -> None:
     """Check that each sum can hold.
 
     Raises:
-        SynthesisFailed: the sum of its variables' lower bounds is above the limit.
+        ImpossibleSum: the sum of its variables' lower bounds is above the limit.
     """
     lowest = problem.robot.geometry.vector()
     lowest[problem.places()] = problem.bounds()[0]
-    for limit in problem.sums:
+    for number, limit in enumerate(problem.sums):
         least = max(float(lowest[places].sum()) for places in problem.summed(limit))
         if least > limit.at_most:
-            raise SynthesisFailed(
-                f"{limit} cannot hold: with every variable at its lower bound the sum is {least:g}", "not started"
-            )
+            reason = f"{limit} cannot hold: with every variable at its lower bound the sum is {least:g}"
+            raise ImpossibleSum(number, reason)
 
 
 def reaching_starts(problem: Problem, poses: Array, seed: int, count: int) -> list[Array]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
+from design import ImpossibleSum
 from kinematics import InvalidField, LinkwrightError, UnreachablePose
 from studies.errors import (
     ApproachFailed,
@@ -54,6 +55,8 @@ def told_at_key(file: TomlFile) -> Iterator[None]:
         raise StudyFailed(file, ("trajectory", "approach"), error) from error
     except HomeOutOfReach as error:
         raise _of_home(file, error) from error
+    except ImpossibleSum as error:
+        raise StudyFailed(file, ("optimise", "sums", error.number, "at_most"), error) from error
     except RequirementFailed as error:
         raise RequirementFailed([replace(one, place=_required_at(file, one.margin)) for one in error.failed]) from error
     except PathBeyondLimit as error:

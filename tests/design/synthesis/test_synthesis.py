@@ -13,6 +13,7 @@ from design import (
     Bounds,
     Box,
     Cylinder,
+    ImpossibleSum,
     Region,
     Requirement,
     SumLimit,
@@ -111,8 +112,9 @@ def test_an_impossible_requirement_fails_by_its_name() -> None:
 
 def test_an_impossible_sum_fails_by_its_name() -> None:
     sums = (SumLimit(("arm_length", "rod_length"), 0.5),)
-    with pytest.raises(SynthesisFailed, match=r"arm_length \+ rod_length <= 0\.5"):
+    with pytest.raises(ImpossibleSum, match=r"arm_length \+ rod_length <= 0\.5") as error:
         synthesise(problem(("arm_length", 0.25, 0.5), sums=sums), REGION, starts=1, about=ABOUT)
+    assert (error.value.number, error.value.exit_status) == (0, 2)
 
 
 def test_too_few_rounds_are_a_failure_and_not_an_answer() -> None:

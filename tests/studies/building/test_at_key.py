@@ -118,3 +118,18 @@ def test_what_is_refused_is_told_at_its_key(
     assert f"{study}:{line}: " in ended.stderr
     assert f"{key}: " in ended.stderr
     assert says in ended.stderr
+
+
+def test_a_sum_that_cannot_hold_and_a_requirement_that_fails_are_told_at_their_keys(tmp_path: Path) -> None:
+    study = tmp_path / "study.toml"
+    sums = '[[optimise.sums]]\nfields = ["arm_length", "rod_length"]\nat_most = 0.1\n'
+    study.write_text(SMALL + sums)
+    ended = linkwright("optimise", study)
+    assert ended.returncode == 2
+    assert f"{study}:{study.read_text().splitlines().index('at_most = 0.1') + 1}: optimise.sums" in ended.stderr
+    given = re.sub(r"\[optimise\].*?(?=\[\[requirement)", "", SMALL, flags=re.S)
+    study.write_text(re.sub(r"at_least = .*", "at_least = 0.999", given))
+    ended = linkwright("run", study, "--out", tmp_path / "out")
+    assert ended.returncode == 1
+    line = study.read_text().splitlines().index("at_least = 0.999") + 1
+    assert f"{study}:{line}: requirement.at_least: " in ended.stderr.replace("requirement.1.", "requirement.")
