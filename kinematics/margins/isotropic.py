@@ -74,7 +74,7 @@ class Fvi(Margin):
     """min(v_w / v_wl, f_w / f_wl)."""
 
     name = "fvi"
-    words = "FVI: worst isotropic speed and force over the wanted ones"
+    words = "the smaller of worst isotropic speed and force, each over the wanted one"
     of_jacobians = True
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:

@@ -16,7 +16,7 @@ class DeterminantOfJx(Margin):
     """|det J_x| over its scale, in [0, 1]; the volume sqrt(det J_x^T J_x) with more joints than freedoms."""
 
     name = "det_J_x"
-    words = "determinant of J_x over its scale"
+    words = "how far the platform is from a parallel singularity: 0 on it, 1 at most"
     holds_on_paths = True
     of_jacobians = True
     singularity = "parallel"

@@ -20,7 +20,7 @@ class WorstOfJq(Margin):
     """The worst |J_q,i| over its scale, in [0, 1]."""
 
     name = "J_q"
-    words = "worst entry of J_q over its scale"
+    words = "how far the worst limb is from a serial singularity: 0 on it, 1 at most"
     holds_on_paths = True
     of_jacobians = True
 
@@ -46,7 +46,7 @@ class DeterminantOfJq(Margin):
     """The product of all |J_q,i| over their scales, in [0, 1]."""
 
     name = "det_J_q"
-    words = "determinant of J_q over its scale"
+    words = "how far all limbs together are from a serial singularity: 0 on it, 1 at most"
     of_jacobians = True
     singularity = "serial"
 

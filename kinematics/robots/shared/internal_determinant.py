@@ -16,7 +16,7 @@ class InternalDeterminant(Margin):
     """|det J_int|, dimensionless in [0, 1]; of mechanisms that state the length of each single rod."""
 
     name = "internal_determinant"
-    words = "internal determinant, its modulus in [0, 1]; of Heli4 |(59)| over d^4 l^4"
+    words = "how far the rods are from an internal singularity: 0 on it, 1 at most; of Heli4 by (59)"
     holds_on_paths = True
     singularity = "internal"
 

@@ -88,7 +88,7 @@ def test_a_length_in_millimetres_is_the_very_number_in_metres() -> None:
 
 def test_figures_that_still_move_are_printed_with_how_far(tmp_path: Path) -> None:
     corner = ("--over", "y_mm=200:300", "--over", "z=0.3:0.6", "--at", "theta_deg=0")
-    done = linkwright("map", "redundant_3t1r", *corner, "--tolerance", 1e-12, "--seconds", 2, "--out", tmp_path)
+    done = linkwright("map", "redundant_3t1r", *corner, "--tolerance", 1e-12, "--seconds", 4, "--out", tmp_path)
     assert done.returncode == 1, done.stderr
     assert "not settled" in done.stdout
     assert "changed the figures by" in " ".join(done.stdout.split())

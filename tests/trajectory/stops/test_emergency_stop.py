@@ -35,6 +35,7 @@ def stops(
     at = [*np.linspace(0.0, there.duration, request.param - 8)[1:-1], *corners, *knots, knots[1] * (1 - 1e-10)]
     at += [1e-6 * there.duration, (1 - 1e-6) * there.duration]
     found = [(there, emergency_stop(robot, there, t, limits, 1.0)) for t in at]
+    assert len(found) >= request.param
     return found + [(back, emergency_stop(robot, back, f * back.duration, limits, 1.0)) for f in (0.3, 0.5, 0.7)]
 
 
