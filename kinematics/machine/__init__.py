@@ -16,9 +16,23 @@ from kinematics.machine.links import (
     TreeJoint,
     universal,
 )
+from kinematics.machine.load import Load
+from kinematics.machine.materials import MATERIALS, Material
+from kinematics.machine.members import (
+    Member,
+    Plate,
+    Tube,
+    bar,
+    platform,
+    require_walls,
+    shared_joints,
+    unjoined,
+)
+from kinematics.machine.structure import Structure
 
 __all__ = [
     "AXES",
+    "MATERIALS",
     "ORIGIN",
     "REST",
     "TURN",
@@ -32,22 +46,33 @@ __all__ = [
     "InertiaRecord",
     "JointRanges",
     "Link",
+    "Load",
+    "Material",
+    "Member",
     "Pair",
     "Particle",
     "PassiveJoint",
+    "Plate",
     "Points",
     "Reference",
     "Rod",
     "RodRanges",
     "Rotor",
+    "Structure",
     "Tree",
     "TreeJoint",
+    "Tube",
     "angle",
+    "bar",
     "frame",
     "kind_of",
     "length",
     "numbers_of",
+    "platform",
     "ratio",
+    "require_walls",
     "screw_pitch",
+    "shared_joints",
     "universal",
+    "unjoined",
 ]

@@ -26,25 +26,28 @@ class DriveTrain:
         motor_inertia: of each motor about its own axis; an actuator moves `gear_ratio`^2 times as much [kg m^2].
         coulomb: [N m] or [N].
         viscous: [N m s/rad] or [N s/m].
+        stiffness: of gear and servo loop, at the actuator [N m/rad] or [N/m]; inf if they do not give way.
 
     Raises:
-        InvalidValue: a value is infinite, NaN or negative, or a gear ratio is 0.
+        InvalidValue: a value is infinite, NaN or negative, or a gear ratio or stiffness is 0.
     """
 
     gear_ratio: PerActuator = 1.0
     motor_inertia: PerActuator = 0.0
     coulomb: PerActuator = 0.0
     viscous: PerActuator = 0.0
+    stiffness: PerActuator = float("inf")
 
     def __post_init__(self) -> None:
         for f in fields(self):
             value = getattr(self, f.name)
             numbers = numbers_of(value)
-            if numbers is None or numbers.ndim > 1 or not np.isfinite(numbers).all() or np.any(numbers < 0.0):
-                raise InvalidField("DriveTrain", f.name, value, "finite and >= 0")
+            above = f.name in ("gear_ratio", "stiffness")
+            good = numbers is not None and numbers.ndim < 2 and np.all(numbers > 0.0 if above else numbers >= 0.0)
+            if numbers is None or not good or not (f.name == "stiffness" or np.isfinite(numbers).all()):
+                expected = "> 0, or inf" if f.name == "stiffness" else "finite and > 0" if above else "finite and >= 0"
+                raise InvalidField("DriveTrain", f.name, value, expected)
             object.__setattr__(self, f.name, frozen(numbers))
-        if np.any(np.asarray(self.gear_ratio) == 0.0):
-            raise InvalidField("DriveTrain", "gear_ratio", self.gear_ratio, "> 0")
 
     def check(self, count: int) -> None:
         """Check that every field suits `count` actuators.

@@ -32,16 +32,17 @@ class GeometryRecord:
             words = " rows of ".join(str(k) for k in wanted) + " numbers" if wanted else "a number"
             array = numbers_of(given)
             if array is None or array.shape != wanted:
-                raise self._invalid(f.name, given, words)
+                raise self.invalid(f.name, given, words)
             if not np.isfinite(array).all():
-                raise self._invalid(f.name, given, "finite numbers")
+                raise self.invalid(f.name, given, "finite numbers")
             kind = kind_of(f)
             if not kind.allows(array, array):
-                raise self._invalid(f.name, given, kind.expected)
+                raise self.invalid(f.name, given, kind.expected)
             object.__setattr__(self, f.name, frozen(array))
 
     @classmethod
-    def _invalid(cls, name: str, found: object, expected: str) -> InvalidGeometry:
+    def invalid(cls, name: str, found: object, expected: str) -> InvalidGeometry:
+        """The error that names a field."""
         return InvalidGeometry(cls.__qualname__.split(".")[0].removesuffix("Geometry"), name, found, expected)
 
     @classmethod

@@ -11,6 +11,18 @@ from kinematics.margins.reach import REACH
 from kinematics.margins.serial import DET_J_Q, J_Q
 
 # What every mechanism has.
-STANDARD = (REACH, JOINT_TRAVEL, FVI, V_W, F_W, FORCE_CAPABILITY, INVERSE_CONDITION_NUMBER, J_Q, DET_J_Q, DET_J_X)
+STANDARD = (
+    REACH,
+    JOINT_TRAVEL,
+    CLEARANCE,
+    FVI,
+    V_W,
+    F_W,
+    FORCE_CAPABILITY,
+    INVERSE_CONDITION_NUMBER,
+    J_Q,
+    DET_J_Q,
+    DET_J_X,
+)
 
 __all__ = ["CLEARANCE", "PASSIVE_JOINT", "STANDARD"]

@@ -7,6 +7,7 @@ import numpy as np
 
 from kinematics.arrays import Array
 
+_NO_LENGTH = 1e-100  # m^2: a segment with a smaller square is a point
 _PARALLEL = 1e-14  # squared sine of the angle below which only rounding is left of it
 
 
@@ -27,7 +28,14 @@ def segment_distances(one: Array, two: Array) -> Array:
 
 
 def segment_gap_symbolic(one: ca.SX, two: ca.SX) -> ca.SX:
-    """(3,) the shortest way from one segment of positive length to another, each (3, 2) with its ends in columns [m].
+    """(3,) the shortest way from one segment to another, as of `nearest_symbolic`."""
+    return nearest_symbolic(one, two)[0]
+
+
+def nearest_symbolic(one: ca.SX, two: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """The shortest way (3,) from one segment to another, each (3, 2) with its ends in columns [m]; and its two ends.
+
+    These are shares of the segments, 0 at the first column and 1 at the second.
 
     The nearest point of the first segment's line, held within the segment; of the second, nearest to it, held within;
     and of the first again. As the square is convex, no further turn is needed. Parallel segments start from any point:
@@ -36,11 +44,12 @@ def segment_gap_symbolic(one: ca.SX, two: ca.SX) -> ca.SX:
     """
     a, c = one[:, 0], two[:, 0]
     u, v, w = one[:, 1] - a, two[:, 1] - c, c - a
-    uu, uv, vv, uw, vw = ca.dot(u, u), ca.dot(u, v), ca.dot(v, v), ca.dot(u, w), ca.dot(v, w)
+    uu, vv = ca.fmax(ca.dot(u, u), _NO_LENGTH), ca.fmax(ca.dot(v, v), _NO_LENGTH)
+    uv, uw, vw = ca.dot(u, v), ca.dot(u, w), ca.dot(v, w)
     s = _within((uw * vv - vw * uv) / ca.fmax(uu * vv - uv * uv, _PARALLEL * uu * vv))
     t = _within((s * uv - vw) / vv)
     s = _within((uw + t * uv) / uu)
-    return w + t * v - s * u
+    return w + t * v - s * u, s, t
 
 
 def _within(share: ca.SX) -> ca.SX:

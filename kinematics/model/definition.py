@@ -13,7 +13,16 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import casadi as ca
 
 from kinematics.arrays import Array
-from kinematics.machine import Bodies, GeometryRecord, InertiaRecord, JointRanges, PassiveJoint, Reference, Tree
+from kinematics.machine import (
+    Bodies,
+    GeometryRecord,
+    InertiaRecord,
+    JointRanges,
+    Member,
+    PassiveJoint,
+    Reference,
+    Tree,
+)
 from kinematics.model.abstract_margin import Margin
 from kinematics.model.indices import FviBounds
 
@@ -107,12 +116,9 @@ class Definition(ABC):
         """The joints at the rods' ends. If there are any, `Ranges` limits them and `PASSIVE_JOINT` is a margin."""
         return []
 
-    def segment_pairs(self) -> list[tuple[ca.SX, ca.SX]]:
-        """Pairs of members (3, 2) that must not touch, ends in columns.
-
-        If there are any, `CLEARANCE` [m] is a margin.
-        """
-        return []
+    @abstractmethod
+    def members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+        """The straight bodies with their thickness. Those that share no joint must not touch: `clearance`."""
 
     @classmethod
     def drives(cls, g: SimpleNamespace) -> ca.SX:  # noqa: ARG003

@@ -14,7 +14,7 @@ import numpy as np
 from kinematics.arrays import Array, checked, together
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.evaluation import BlockProgram, evaluate
-from kinematics.machine import GeometryRecord, InertiaRecord, JointRanges
+from kinematics.machine import GeometryRecord, InertiaRecord, JointRanges, Load, Structure, require_walls
 from kinematics.model import expressions
 from kinematics.model.abstract_margin import Margin, Measure
 from kinematics.model.continuation import forward_near
@@ -44,6 +44,9 @@ class Mechanism(Definition):
         ranges: JointRanges | None = None,
         home: Sequence[float] | Array | None = None,
         home_joints: Sequence[float] | Array | None = None,
+        *,
+        structure: Structure | None = None,
+        load: Load | None = None,
     ) -> None:
         """A robot; each part has a default.
 
@@ -53,13 +56,16 @@ class Mechanism(Definition):
                 middle of the workspace.
             home_joints: (m,) joints near those at home. They choose a branch of each limb's inverse, such as elbow in.
                 By default the usual branches are used.
+            structure: the materials of the members, and how the joints between them give way.
+            load: what `natural_frequency` and `strength` are for.
 
         Raises:
-            InvalidValue, InvalidShape: the message names the part.
+            InvalidValue, InvalidShape, InvalidGeometry: the message names the part.
         """
         self.geometry = geometry if geometry is not None else self.Geometry()
         if not isinstance(self.geometry, self.Geometry):
             raise InvalidValue(f"{type(self).__name__} geometry", geometry, f"a {self.Geometry.__name__}")
+        require_walls(self.geometry)
         self.inertia = inertia if inertia is not None else self.Inertia()
         if not isinstance(self.inertia, self.Inertia):
             raise InvalidValue(f"{type(self).__name__} inertia", inertia, f"a {self.Inertia.__name__}")
@@ -68,12 +74,19 @@ class Mechanism(Definition):
         if not isinstance(self.ranges, self.Ranges):
             raise InvalidValue(f"{type(self).__name__} ranges", ranges, f"a {self.Ranges.__name__}")
         self.ranges.check(len(self.joint_names))
+        self.structure = structure if structure is not None else Structure()
+        if not isinstance(self.structure, Structure):
+            raise InvalidValue(f"{type(self).__name__} structure", structure, "a Structure")
+        self.load = load if load is not None else Load()
+        if not isinstance(self.load, Load):
+            raise InvalidValue(f"{type(self).__name__} load", load, "a Load")
         joints = _vector(home_joints, "home_joints", self.joint_names)
         self._given = _vector(home, "home", self.pose_names), joints
         self.home = np.array(self._given[0] or self.default_home(self.geometry), dtype=float) + 0.0  # no -0
         self.home.setflags(write=False)
         self.mode = mode_at(self, np.array(joints) if joints else None)
-        self._identity = (type(self), self.geometry, self.inertia, self.ranges, tuple(self.home.tolist()), self.mode)
+        records = self.geometry, self.inertia, self.ranges, self.structure, self.load
+        self._identity = (type(self), *records, tuple(self.home.tolist()), self.mode)
         self._hash = hash(self._identity)
 
     def __eq__(self, other: object) -> bool:
@@ -83,8 +96,9 @@ class Mechanism(Definition):
         return self._hash
 
     def conditions(self) -> dict[str, Any]:
-        """The plain data that a margin depends on besides the geometry: joint ranges and working mode."""
-        return {"ranges": asdict(self.ranges), "mode": self.mode}
+        """The plain data that a margin depends on besides the geometry."""
+        records = {name: asdict(getattr(self, name)) for name in ("ranges", "inertia", "structure", "load")}
+        return records | {"mode": self.mode}
 
     @property
     def conditions_digest(self) -> str:
@@ -93,11 +107,25 @@ class Mechanism(Definition):
 
     def with_inertia(self, inertia: InertiaRecord) -> Self:
         """The same robot with other masses and drives."""
-        return type(self)(self.geometry, inertia, self.ranges, *self._given)
+        return self._with(inertia=inertia)
 
     def with_geometry(self, geometry: GeometryRecord) -> Self:
         """The same robot with another geometry; a given home is kept."""
-        return type(self)(geometry, self.inertia, self.ranges, *self._given)
+        return self._with(geometry=geometry)
+
+    def with_structure(self, structure: Structure) -> Self:
+        """The same robot of other materials."""
+        return self._with(structure=structure)
+
+    def with_load(self, load: Load) -> Self:
+        """The same robot with another load."""
+        return self._with(load=load)
+
+    def _with(self, **changed: Any) -> Self:
+        names = ("geometry", "inertia", "ranges", "structure", "load")
+        home, home_joints = self._given
+        records = {name: getattr(self, name) for name in names} | changed
+        return type(self)(**records, home=home, home_joints=home_joints)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.geometry})"

@@ -12,7 +12,7 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
-from kinematics.machine import Bodies, GeometryRecord, Particle, angle, length
+from kinematics.machine import Bodies, GeometryRecord, Member, Particle, angle, length, platform
 from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import not_below_zero
 from kinematics.model import Build, FviBounds, Model, by_name
@@ -25,7 +25,9 @@ from kinematics.robots.shared import (
     central_limbs,
     columns,
     height_in_reach,
+    limb_members,
     radial_directions,
+    studs,
 )
 
 _DEG = math.pi / 180.0
@@ -46,11 +48,17 @@ class DeltaGeometry(GeometryRecord):
     arm_length: float = length(0.350, doc="L, actuator to rod")
     rod_length: float = length(0.800, doc="l, rod")
     azimuths: tuple[float, ...] = angle((0.0, 120 * _DEG, 240 * _DEG), doc="alpha, of the limbs")
+    parallelogram_width: float = length(0.06, doc="between the two rods of a limb")
+    arm_radius: float = length(0.025, doc="of the arms' tubes, outside")
+    arm_wall: float = length(0.002, doc="of the arms' tubes")
+    rod_radius: float = length(0.006, doc="of the rods' tubes, outside")
+    rod_wall: float = length(0.0015, doc="of the rods' tubes")
+    plate_thickness: float = length(0.012, doc="of the plate")
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if abs(_triangle(np.array(self.azimuths))) < 1e-9:
-            raise self._invalid("azimuths", self.azimuths, "three different directions")
+            raise self.invalid("azimuths", self.azimuths, "three different directions")
 
 
 @dataclass(frozen=True)
@@ -111,6 +119,19 @@ class Delta(RotaryLimbs):
         bodies = arms_and_rods(self, pose, joints, g, self.inertia.rod_mass, ["plate"] * 3)
         bodies.particles.append(Particle("plate", self.inertia.plate_mass + payload, pose))
         return bodies
+
+    def members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+        """Arms, both rods of each limb, and the plate, whose corners are the rods' ends."""
+        corners = studs(self.platform_points(pose, g), self.limbs(g).axes(), g.parallelogram_width)
+        own, half = self.geometry, self.geometry.parallelogram_width / 2
+        flat = [
+            u * complex(own.platform_radius, side * half)
+            for u in np.exp(1j * np.array(own.azimuths))
+            for side in (-1, 1)
+        ]
+        shapes = platform(corners, np.column_stack([np.real(flat), np.imag(flat)]), g.plate_thickness)
+        limbs = limb_members(type(self), pose, joints, g, g.parallelogram_width)
+        return [*limbs, Member("plate", ("B1", "B2", "B3"), "plate", shapes)]
 
     @classmethod
     def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:

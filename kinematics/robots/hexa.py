@@ -14,7 +14,7 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
-from kinematics.machine import TURN, Bodies, GeometryRecord, angle, length
+from kinematics.machine import TURN, Bodies, GeometryRecord, Member, angle, length
 from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.model import Build, FviBounds, Model, by_name
 from kinematics.robots.gough_stewart import (
@@ -32,6 +32,7 @@ from kinematics.robots.shared import (
     RotaryLimbs,
     arms_and_rods,
     columns,
+    limb_members,
     radial_directions,
     twins,
     upright_limbs,
@@ -61,18 +62,23 @@ class HexaGeometry(GeometryRecord):
     )
     arm_length: float = length(0.300, doc="L, drive to elbow")
     rod_length: float = length(0.650, doc="l, rod")
+    arm_radius: float = length(0.020, doc="of the arms' tubes, outside")
+    arm_wall: float = length(0.002, doc="of the arms' tubes")
+    rod_radius: float = length(0.006, doc="of the rods' tubes, outside")
+    rod_wall: float = length(0.0015, doc="of the rods' tubes")
+    plate_thickness: float = length(0.012, doc="of the platform")
 
     def __post_init__(self) -> None:
         super().__post_init__()
         points = np.array(self.platform_points)
         sizes = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
         if sizes[1] <= 1e-9 * sizes[0]:
-            raise self._invalid("platform_points", self.platform_points, "points that are not on one line")
+            raise self.invalid("platform_points", self.platform_points, "points that are not on one line")
         turned = self.arm_length * np.exp(1j * np.array(self.arm_azimuths))
         limbs = np.column_stack([self.base_points, turned.real, turned.imag, points])
         if pair := twins(limbs, np.abs(limbs).max()):
             reason = f"limbs {pair[0]} and {pair[1]} have the same drive and arm, so det J_x is zero at every pose"
-            raise self._invalid("platform_points", self.platform_points, f"a different point for each limb: {reason}")
+            raise self.invalid("platform_points", self.platform_points, f"a different point for each limb: {reason}")
 
 
 @dataclass(frozen=True)
@@ -152,6 +158,11 @@ class Hexa(SixLegs, RotaryLimbs):
         bodies = arms_and_rods(self, pose, joints, g, self.inertia.rod_mass, ["platform"] * 6)
         self.platform_bodies(pose, self.platform_points(pose, g), payload, bodies)
         return bodies
+
+    def members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+        """Arms, rods and platform."""
+        platform = self.platform_member(self.platform_points(pose, g), g)
+        return [*limb_members(type(self), pose, joints, g, None), platform]
 
     @classmethod
     def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:

@@ -49,6 +49,9 @@ class GoughStewartGeometry(GeometryRecord):
         symmetric_points(0.5, 12 * _DEG, 0.0), minimum=None, doc="A_i in R_0"
     )
     platform_points: tuple[tuple[float, ...], ...] = length(_platform(0.3, 12 * _DEG), minimum=None, doc="B_i in R_m")
+    leg_radius: float = length(0.020, doc="of the legs' cylinders, outside")
+    leg_wall: float = length(0.003, doc="of the legs' cylinders")
+    plate_thickness: float = length(0.020, doc="of the platform")
     Z: tuple[tuple[float, ...], ...] = frame(doc="Z, base frame R_0 in the reference frame R_f; [8.5]")
     E: tuple[tuple[float, ...], ...] = frame(doc="E, tool frame R_E in the platform's frame R_m; [8.5]")
 
@@ -59,7 +62,7 @@ class GoughStewartGeometry(GeometryRecord):
             rotation = matrix[:3, :3]
             rigid = np.allclose(rotation @ rotation.T, np.eye(3), rtol=0.0, atol=_RIGID) and np.linalg.det(rotation) > 0
             if not rigid or np.any(matrix[3] != (0.0, 0.0, 0.0, 1.0)):
-                raise self._invalid(name, getattr(self, name), "a rotation and a translation above (0, 0, 0, 1)")
+                raise self.invalid(name, getattr(self, name), "a rotation and a translation above (0, 0, 0, 1)")
         reason = why_singular(np.array(self.base_points), np.array(self.platform_points))
         if reason is not None:
             raise SingularArchitecture(reason)
@@ -131,9 +134,7 @@ class GoughStewartGeometry(GeometryRecord):
         x, other = points[1] - points[0], points[5] - points[0]
         z = np.cross(x, other)
         if np.linalg.norm(z) <= _RIGID * np.ptp(points) ** 2:
-            raise self._invalid(
-                name, getattr(self, name), "points 1, 2 and 6 not on one line, for the chapter's frames"
-            )
+            raise self.invalid(name, getattr(self, name), "points 1, 2 and 6 not on one line, for the chapter's frames")
         x, z = x / np.linalg.norm(x), z / np.linalg.norm(z)
         result = np.eye(4)
         result[:3] = np.column_stack([x, np.cross(z, x), z, points[0]])

@@ -15,7 +15,7 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.errors import InvalidShape
-from kinematics.machine import TURN, Bodies, Particle, PassiveJoint, Rotor
+from kinematics.machine import TURN, Bodies, Member, Particle, PassiveJoint, Rotor, Tube, shared_joints
 from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.model import FviBounds, Mechanism, Mode, Model, by_name
 from kinematics.robots.gough_stewart.forward import ForwardSolution, assembly_modes, matched_pose
@@ -242,6 +242,17 @@ class GoughStewart(SixLegs):
                 bodies.particles.append(Particle(f"leg {k + 1}", share * i.rod_mass, point))
         self.platform_bodies(pose, ends, payload, bodies)
         return bodies
+
+    def members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
+        """The legs and the platform. Legs to a common point are joined there."""
+        below, above = (np.array(points) for points in (self.geometry.base_points, self.geometry.platform_points))
+        held = zip(shared_joints("A", below), shared_joints("B", above), strict=True)
+        base, legs = self.base_points(g), self.legs(pose, g)
+        found = [
+            Member(f"leg {i + 1}", names, "leg", (Tube(base[:, i], base[:, i] + legs[:, i], g.leg_radius, g.leg_wall),))
+            for i, names in enumerate(held)
+        ]
+        return [*found, self.platform_member(base + legs, g)]
 
     @staticmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:  # noqa: ARG004

@@ -7,13 +7,14 @@ base's frame. The legs are a Gough-Stewart platform's own, or a Hexa's rods on t
 from __future__ import annotations
 
 from abc import abstractmethod
+from types import SimpleNamespace
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array, together
-from kinematics.machine import Bodies, Particle
+from kinematics.machine import Bodies, Member, Particle, platform, shared_joints
 from kinematics.mathematics import angles, rotation, turn
 from kinematics.model import Mechanism, reached
 from kinematics.robots.gough_stewart.forward import ForwardSolution, solve_forward
@@ -66,6 +67,12 @@ class SixLegs(Mechanism):
         share = self.inertia.platform_mass / 6
         bodies.particles.extend(Particle("platform", share, points[:, i]) for i in range(6))
         bodies.particles.append(Particle("platform", payload, pose[:3]))
+
+    def platform_member(self, points: ca.SX, g: SimpleNamespace) -> Member:
+        """The platform, held at the B_i (3, 6)."""
+        numbers = np.array(self.geometry.platform_points)
+        shapes = platform(points, numbers, g.plate_thickness)
+        return Member("platform", tuple(shared_joints("B", numbers)), "plate", shapes)
 
     @staticmethod
     def moved(pose: Array, twist: Array) -> Array:

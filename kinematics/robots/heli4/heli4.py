@@ -14,7 +14,7 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
-from kinematics.machine import TURN
+from kinematics.machine import TURN, Member, Tube
 from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import gaps, real_roots, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, in_aspect, joined_to_home, polished
@@ -30,8 +30,10 @@ from kinematics.robots.shared import (
     RotaryLimbs,
     central_limbs,
     height_in_reach,
+    limb_members,
     outline,
     radial_directions,
+    studs,
 )
 
 _E_Z = ca.DM([0, 0, 1])
@@ -131,6 +133,19 @@ class Heli4(RotaryLimbs, RodLevel):
 
     bodies = bodies
     link_tree = links
+
+    @classmethod
+    def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+        """Arms, both rods of each limb, and two plates in the shape of an H, which the screw joins."""
+        ends = cls.platform_points(pose, g)
+        held, radius = studs(ends, cls.limbs(g).axes(), g.parallelogram_width), g.plate_thickness / 2
+        plates = []
+        for name, first in (("lower plate", 0), ("upper plate", 2)):
+            joints_of = (f"B{first + 1}", f"B{first + 2}", "screw")
+            axles = [Tube(held[:, 2 * i], held[:, 2 * i + 1], radius, radius) for i in (first, first + 1)]
+            middle = Tube(ends[:, first], ends[:, first + 1], radius, radius)
+            plates.append(Member(name, joints_of, "plate", (middle, *axles)))
+        return limb_members(cls, pose, joints, g, g.parallelogram_width) + plates
 
     @staticmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:

@@ -17,7 +17,7 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
-from kinematics.machine import TURN, Bodies, Particle, Rotor, angle, length, ratio
+from kinematics.machine import TURN, Bodies, Member, Particle, Rotor, Tube, angle, bar, length, ratio
 from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import determinant, distinct, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, joined_to_home, polished
@@ -34,7 +34,9 @@ from kinematics.robots.shared import (
     central_limbs,
     columns,
     height_in_reach,
+    limb_members,
     radial_directions,
+    studs,
 )
 
 _DEG = math.pi / 180.0
@@ -56,6 +58,12 @@ class Par4Geometry(HalvesGeometry):
     azimuths: tuple[float, ...] = angle(tuple(a * _DEG for a in (45, 135, 225, 315)), doc="alpha, of the limbs")
     bar_length: float = length(0.100, doc="b, of the bars between the halves")
     bar_angle: float = angle(-90 * _DEG, doc="delta, azimuth of the bars from half 1 to half 2 at theta = 0")
+    parallelogram_width: float = length(0.06, doc="between the two rods of a limb")
+    arm_radius: float = length(0.025, doc="of the arms' tubes, outside")
+    arm_wall: float = length(0.002, doc="of the arms' tubes")
+    rod_radius: float = length(0.006, doc="of the rods' tubes, outside")
+    rod_wall: float = length(0.0015, doc="of the rods' tubes")
+    bar_thickness: float = length(0.012, doc="of the platform's halves and bars")
     amplification: float = ratio(4.0, doc="k, turns of the tool a turn of the bars; 1 without a gear")
 
 
@@ -147,6 +155,20 @@ class Par4(RotaryLimbs):
         bodies.particles.append(Particle("bars", i.bars_mass + payload, pose[:3]))
         bodies.rotors.extend([Rotor(i.bars_inertia, psi), Rotor(i.tool, pose[3])])
         return bodies
+
+    @classmethod
+    def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+        """Arms, both rods of each limb, the halves, and the bars by the line midway, which joins the halves."""
+        ends, thick = cls.platform_points(pose, g), g.bar_thickness / 2
+        middle = cls.half_bar(pose[3] / g.amplification, g)
+        at = {"half 1": (pose[:3] - middle, (0, 1)), "half 2": (pose[:3] + middle, (2, 3))}
+        platform = [bar("bars", tuple(at), "plate", at["half 1"][0], at["half 2"][0], thick)]
+        held = studs(ends, cls.limbs(g).axes(), g.parallelogram_width)
+        for name, (centre, limbs) in at.items():
+            spokes = [Tube(centre, ends[:, i], thick, thick) for i in limbs]
+            axles = [Tube(held[:, 2 * i], held[:, 2 * i + 1], thick, thick) for i in limbs]
+            platform.append(Member(name, (name, *(f"B{i + 1}" for i in limbs)), "plate", (*spokes, *axles)))
+        return limb_members(cls, pose, joints, g, g.parallelogram_width) + platform
 
     @classmethod
     def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:

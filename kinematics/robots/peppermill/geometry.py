@@ -24,6 +24,10 @@ class PeppermillGeometry(GeometryRecord):
     distal_lengths: tuple[float, ...] = length((0.50, 0.50), doc="l_i, elbow to platform")
     half_distance: float = length(0.50, doc="b_0, origin to either drive axis")
     pitches: tuple[float, ...] = screw_pitch((0.10, -0.10), doc="p_i, of the platform's screws")
+    link_radius: float = length(0.020, doc="of both limbs' links, outside")
+    link_wall: float = length(0.002, doc="of both limbs' links")
+    nut_spacing: float = length(0.30, doc="between the nuts at theta = 0; not in the paper, whose nuts coincide there")
+    screw_radius: float = length(0.010, doc="of the platform's screws")
     drive_pitch: float = screw_pitch(0.10, doc="p_c, of the drives' screws")
 
     def __post_init__(self) -> None:
@@ -31,9 +35,9 @@ class PeppermillGeometry(GeometryRecord):
         first, second = self.pitches
         if abs(first - second) <= _SAME_PITCH * max(abs(first), abs(second)):
             reason = "with equal pitches det A of (48) is zero at every pose (an architecture singularity)"
-            raise self._invalid("pitches", self.pitches, f"two different pitches: {reason}")
+            raise self.invalid("pitches", self.pitches, f"two different pitches: {reason}")
         if self.drive_pitch < 0.0:
-            raise self._invalid("drive_pitch", self.drive_pitch, "a pitch > 0 m/turn, as in (A.2)")
+            raise self.invalid("drive_pitch", self.drive_pitch, "a pitch > 0 m/turn, as in (A.2)")
 
 
 @dataclass(frozen=True)

@@ -22,10 +22,13 @@ from kinematics.evaluation import evaluate
 from kinematics.machine import (
     TURN,
     Bodies,
+    Member,
     Particle,
     PassiveJoint,
     Rod,
     Rotor,
+    Tube,
+    bar,
 )
 from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.model import Build, FviBounds, Mechanism, Mode, Model, by_name
@@ -234,6 +237,24 @@ class Peppermill(Mechanism):
         bodies.rotors.append(Rotor(i.tool, pose[3]))
         return bodies
 
+    @classmethod
+    def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+        """Proximal and distal links, and the screws between the nuts.
+
+        The paper's nuts coincide at theta = 0. Limb 1 is moved down and limb 2 up, by half of `nut_spacing` each: the
+        same machine with its drive axes further apart.
+        """
+        apart = _E_Z @ (g.nut_spacing / 2 * ca.DM([[-1, 1]]))
+        carriages, elbows, nuts = (points + apart for points in cls.points(pose, joints, g)[1:])
+        found = [bar("screws", ("nut 1", "nut 2"), "screw", nuts[:, 0], nuts[:, 1], g.screw_radius)]
+        for i, k in enumerate(("1", "2")):
+            slide, elbow, nut = f"carriage {k}", f"elbow {k}", f"nut {k}"
+            found += [
+                Member(f"proximal link {k}", (slide, elbow), "link", (_link(carriages[:, i], elbows[:, i], g),)),
+                Member(f"distal link {k}", (elbow, nut), "link", (_link(elbows[:, i], nuts[:, i], g),)),
+            ]
+        return found
+
     @staticmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
         """The z axis between the drive axes, these axes, both limbs, the screws and the tool's pointer."""
@@ -262,3 +283,7 @@ def _inverse_modes(_: Peppermill, model: Model) -> list[ca.SX]:
 
 def _forward_modes(_: Peppermill, model: Model) -> Build:
     return [model.joints], [ca.horzcat(*(limbs.pose_of_joints(model.joints, s, model.g) for s in limbs.SIDES)).T]
+
+
+def _link(start: ca.SX, end: ca.SX, g: SimpleNamespace) -> Tube:
+    return Tube(start, end, g.link_radius, g.link_wall)

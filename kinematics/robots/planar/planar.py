@@ -15,7 +15,19 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
-from kinematics.machine import TURN, Bodies, GeometryRecord, InertiaRecord, Particle, Points, length
+from kinematics.machine import (
+    TURN,
+    Bodies,
+    GeometryRecord,
+    InertiaRecord,
+    Member,
+    Particle,
+    Points,
+    Tube,
+    length,
+    platform,
+    shared_joints,
+)
 from kinematics.margins import STANDARD
 from kinematics.mathematics import distinct
 from kinematics.model import Build, Mechanism, Model, by_name, joined_to_home
@@ -45,16 +57,19 @@ class PlanarGeometry(GeometryRecord):
     platform_points: tuple[tuple[float, ...], ...] = length(
         triangle(0.15), minimum=None, doc="B_i, in the platform's frame"
     )
+    link_radius: float = length(0.010, doc="of the legs' links, outside")
+    link_wall: float = length(0.002, doc="of the legs' links")
+    plate_thickness: float = length(0.010, doc="of the platform")
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if self._coincide(self.platform_points):
             reason = "about a common point the platform could turn freely"
-            raise self._invalid("platform_points", self.platform_points, f"points that do not all coincide: {reason}")
+            raise self.invalid("platform_points", self.platform_points, f"points that do not all coincide: {reason}")
         legs = np.column_stack([*self._drives(), self.platform_points])
         if pair := twins(legs, self._size()):
             reason = f"legs {pair[0]} and {pair[1]} have the same drive, so det J_x is zero at every pose"
-            raise self._invalid("platform_points", self.platform_points, f"a different point for each leg: {reason}")
+            raise self.invalid("platform_points", self.platform_points, f"a different point for each leg: {reason}")
 
     def _size(self) -> float:
         return float(max(np.abs(self.base_points).max(), np.abs(self.platform_points).max()))
@@ -136,6 +151,22 @@ class Planar(Mechanism):
         points, share = self.platform_points(pose, g), self.inertia.platform_mass / 3
         bodies.particles.extend(Particle("platform", share, points[:, i]) for i in range(3))
         bodies.particles.append(Particle("platform", payload, ca.vertcat(pose[:2], 0)))
+
+    def members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+        """Each leg's links, from the base joint or the slide to the platform, and the platform, all in one plane."""
+        ends, centres = self.platform_points(pose, g), self.circles(joints, g)[0]
+        held = shared_joints("B", np.array(self.geometry.platform_points))
+        links = [
+            Member(f"rod {i + 1}", (f"A{i + 1}", held[i]), "link", (self.link(centres[:, i], ends[:, i], g),))
+            for i in range(3)
+        ]
+        shapes = platform(ends, np.array(self.geometry.platform_points), g.plate_thickness)
+        return [*links, Member("platform", tuple(held), "plate", shapes)]
+
+    @staticmethod
+    def link(start: ca.SX, end: ca.SX, g: SimpleNamespace) -> Tube:
+        """A leg's link."""
+        return Tube(start, end, g.link_radius, g.link_wall)
 
     @classmethod
     def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:

@@ -43,7 +43,7 @@ class Planar3RPRGeometry(PlanarGeometry):
         super().__post_init__()
         if self._coincide(self.base_points):
             reason = "about a common point the robot could turn freely"
-            raise self._invalid("base_points", self.base_points, f"points that do not all coincide: {reason}")
+            raise self.invalid("base_points", self.base_points, f"points that do not all coincide: {reason}")
 
 
 @dataclass(frozen=True)

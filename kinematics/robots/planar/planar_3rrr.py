@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.machine import Bodies, GeometryRecord, JointRanges, Pair, angle, length
+from kinematics.machine import Bodies, GeometryRecord, JointRanges, Member, Pair, angle, length, shared_joints
 from kinematics.model import FviBounds
 from kinematics.robots.planar.planar import AZIMUTHS, Planar, PlanarGeometry, PlanarInertia
 from kinematics.robots.shared import Limbs, RotaryLimbs, arms_and_rods, radial_directions
@@ -84,6 +84,16 @@ class Planar3RRR(Planar, RotaryLimbs):
         """L_i l_i for each J_q,i; `determinant_scale` times the rods' product for det J_x."""
         rods = g.rod_lengths[0] * g.rod_lengths[1] * g.rod_lengths[2]
         return g.arm_lengths * g.rod_lengths, Planar.determinant_scale(g) * rods
+
+    def members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+        """The arms too."""
+        base, elbows = self.base_points(g), self.limbs(g).elbows(joints)
+        held = shared_joints("P", np.array(self.geometry.base_points))
+        arms = [
+            Member(f"arm {i + 1}", (held[i], f"A{i + 1}"), "link", (self.link(base[:, i], elbows[:, i], g),))
+            for i in range(3)
+        ]
+        return arms + super().members(pose, joints, g)
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, drives, rods and platform."""

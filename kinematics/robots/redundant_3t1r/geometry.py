@@ -30,18 +30,21 @@ class Redundant3T1RGeometry(GeometryRecord):
     platform_length: float = length(0.1126, doc="d, between B1 and B3 seen from above")
     platform_height: float = length(0.2, doc="a, from B5 up to B1")
     parallelogram_width: float = length(0.1, doc="between the two rods of arms 3 and 4; not in the paper")
+    rod_radius: float = length(0.010, doc="of the rods' tubes, outside; not in the paper")
+    rod_wall: float = length(0.002, doc="of the rods' tubes; not in the paper")
+    platform_thickness: float = length(0.020, doc="of the platform's bars; not in the paper")
 
     def __post_init__(self) -> None:
         super().__post_init__()
         outer, middle = _LEAST_SPREAD * self.outer_arm_length, _LEAST_SPREAD * self.middle_arm_length
         for name, least in (("outer_rail_y", outer), ("middle_rail_y", middle)):
             if abs(getattr(self, name)) < least:
-                raise self._invalid(
+                raise self.invalid(
                     name, getattr(self, name), f"{least:g} m or more from 0, so that no two rails coincide"
                 )
         if abs(self.outer_rail_z - self.platform_height / 2) < outer:
             why = f"{outer:g} m or more from platform_height / 2, as otherwise nothing holds the height at z = 0"
-            raise self._invalid("outer_rail_z", self.outer_rail_z, why)
+            raise self.invalid("outer_rail_z", self.outer_rail_z, why)
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import PassiveJoint
-from kinematics.margins import CLEARANCE, PASSIVE_JOINT, STANDARD
+from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.model import (
     BestFit,
     EncoderCheck,
@@ -32,7 +32,7 @@ from kinematics.model import (
     polished,
 )
 from kinematics.robots.redundant_3t1r.bodies import Redundant3T1RInertia, bodies
-from kinematics.robots.redundant_3t1r.clearance import arm_distances, arms_apart
+from kinematics.robots.redundant_3t1r.clearance import arm_distances
 from kinematics.robots.redundant_3t1r.forward import candidates
 from kinematics.robots.redundant_3t1r.geometry import (
     LIMBS,
@@ -40,6 +40,7 @@ from kinematics.robots.redundant_3t1r.geometry import (
     Redundant3T1RGeometry,
     Redundant3T1RRanges,
 )
+from kinematics.robots.redundant_3t1r.members import members
 from kinematics.robots.redundant_3t1r.singularities import ParallelSingularity, parallel_conditions
 from kinematics.robots.shared import INTERNAL_DETERMINANT, RodLevel, outline
 
@@ -64,7 +65,7 @@ class Redundant3T1R(RodLevel):
     joint_names = ("x1", "x2", "x3", "x4", "x5", "x6")
     joint_units = ("m",) * LIMBS
     rotations = (3,)
-    margins = by_name(*STANDARD, INTERNAL_DETERMINANT, PASSIVE_JOINT, CLEARANCE)
+    margins = by_name(*STANDARD, INTERNAL_DETERMINANT, PASSIVE_JOINT)
     mirrors = (("y", "theta"), ("z",))
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=1.0, speed=0.5, force=0.5)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta")
@@ -211,9 +212,7 @@ class Redundant3T1R(RodLevel):
         rails, platform = self._evaluate(_arm_ends, pose)
         return arm_distances(rails, platform, self.geometry.parallelogram_width if rods else 0.0)
 
-    def segment_pairs(self) -> list[tuple[ca.SX, ca.SX]]:
-        """The arms' middle lines at a pose, where two share no platform point: the clearance of `arm_distances`."""
-        return arms_apart(*_arm_ends(self, self.model()))
+    members = members
 
     def arm_clearance(self, pose: Array, rods: bool = False) -> Array:
         """(...,) the smallest of `arm_distances` [m], between axes: subtract the arms' thickness."""

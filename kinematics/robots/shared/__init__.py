@@ -3,6 +3,7 @@
 from kinematics.robots.shared.arm_masses import ArmInertia, arms_and_rods
 from kinematics.robots.shared.coincident_limbs import ALIKE, HalvesGeometry, twins
 from kinematics.robots.shared.internal_determinant import INTERNAL_DETERMINANT
+from kinematics.robots.shared.limb_members import SIDES, limb_members, studs
 from kinematics.robots.shared.paired_rods import RodLevel, outline
 from kinematics.robots.shared.rotary_limbs import (
     ArmRanges,
@@ -18,6 +19,7 @@ from kinematics.robots.shared.rotary_limbs import (
 __all__ = [
     "ALIKE",
     "INTERNAL_DETERMINANT",
+    "SIDES",
     "ArmInertia",
     "ArmRanges",
     "HalvesGeometry",
@@ -28,8 +30,10 @@ __all__ = [
     "central_limbs",
     "columns",
     "height_in_reach",
+    "limb_members",
     "outline",
     "radial_directions",
+    "studs",
     "twins",
     "upright_limbs",
 ]

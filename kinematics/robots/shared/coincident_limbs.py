@@ -41,6 +41,6 @@ class HalvesGeometry(GeometryRecord):
         for half in (0, 2):
             if twins(directions[half : half + 2], 1.0):
                 reason = f"limbs {half + 1} and {half + 2} coincide, so det J_x is zero at every pose"
-                raise self._invalid(
+                raise self.invalid(
                     "azimuths", azimuths, f"two different directions for each half, modulo 2 pi: {reason}"
                 )

@@ -1,0 +1,124 @@
+"""Members: the bodies that a mechanism is made of, with their sections."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from typing import NamedTuple
+
+import casadi as ca
+import numpy as np
+
+from kinematics.machine.geometry_record import GeometryRecord
+
+_ONE = 1e-9  # of their size: points that are no further apart are one
+_FLAT = 1e-9  # of their size: what rounding leaves of a plane
+
+
+class Tube(NamedTuple):
+    """A straight tube with round ends: all points within `radius` of the line from `start` to `end`.
+
+    Attributes:
+        start, end: (3,) [m].
+        radius: outside [m].
+        wall: thickness of the wall [m]; as much as the radius for a solid bar.
+    """
+
+    start: ca.SX
+    end: ca.SX
+    radius: ca.SX
+    wall: ca.SX
+
+
+class Plate(NamedTuple):
+    """A flat convex plate with a round rim: all points within half the thickness of the polygon `outline`.
+
+    Attributes:
+        outline: (3, k) corners in order [m].
+        thickness: [m].
+    """
+
+    outline: ca.SX
+    thickness: ca.SX
+
+
+class Member(NamedTuple):
+    """A rigid body.
+
+    Attributes:
+        name: what people call it, such as "rod 3 b".
+        joints: what holds it, by any names. Two members that share a joint are joined, and may touch.
+        material: which field of `Structure` it is made of.
+        shapes: what it consists of.
+    """
+
+    name: str
+    joints: tuple[str, ...]
+    material: str
+    shapes: tuple[Tube | Plate, ...]
+
+
+def bar(name: str, joints: tuple[str, ...], material: str, start: ca.SX, end: ca.SX, radius: ca.SX) -> Member:
+    """A member that is one solid bar."""
+    return Member(name, joints, material, (Tube(start, end, radius, radius),))
+
+
+def unjoined(members: Sequence[Member]) -> Iterator[tuple[Member, Member]]:
+    """The pairs of members that must not touch."""
+    return (pair for pair in combinations(members, 2) if not set(pair[0].joints) & set(pair[1].joints))
+
+
+def shared_joints(name: str, points: np.ndarray) -> list[str]:
+    """(k, 2 or 3) points -> (k,) names, "B1" and so on; points that are one, to rounding, have one name."""
+    size = np.abs(points).max()
+    first = [int(np.flatnonzero(np.abs(points - point).max(axis=1) <= _ONE * size)[0]) for point in points]
+    return [f"{name}{i + 1}" for i in first]
+
+
+def platform(points: ca.SX, numbers: np.ndarray, thickness: ca.SX) -> tuple[Tube | Plate, ...]:
+    """A plate whose corners are the outermost of some points, or bars to them if they are not in one plane.
+
+    Args:
+        points: (3, k) where the joints are.
+        numbers: (k, 2 or 3) the same points in the platform's frame.
+        thickness: of plate or bars [m].
+    """
+    centred = numbers - numbers.mean(axis=0)
+    _, sizes, axes = np.linalg.svd(centred, full_matrices=False)
+    flat, wide = sizes[2:].sum() <= _FLAT * sizes[0], sizes[1] > _FLAT * sizes[0]
+    if flat and wide:
+        return (Plate(points[:, _hull(centred @ axes[:2].T)], thickness),)
+    middle = ca.sum2(points) / points.shape[1]
+    return tuple(Tube(middle, points[:, i], thickness / 2, thickness / 2) for i in range(points.shape[1]))
+
+
+def _hull(flat: np.ndarray) -> list[int]:
+    """(k, 2) points -> the corners of their convex hull, in order; Andrew's monotone chain."""
+    order = np.lexsort((flat[:, 1], flat[:, 0])).tolist()
+    least = _FLAT * np.abs(flat).max() ** 2
+
+    def chain(indices: list[int]) -> list[int]:
+        kept: list[int] = []
+        for i in indices:
+            while len(kept) > 1:
+                (ax, ay), (bx, by) = flat[kept[-1]] - flat[kept[-2]], flat[i] - flat[kept[-1]]
+                if ax * by - ay * bx > least:
+                    break
+                kept.pop()
+            kept.append(i)
+        return kept[:-1]
+
+    return chain(order) + chain(order[::-1])
+
+
+def require_walls(geometry: GeometryRecord) -> None:
+    """Check that no wall is thicker than its tube's radius: the fields `x_wall` and `x_radius` belong together.
+
+    Raises:
+        InvalidGeometry: naming the wall.
+    """
+    numbers = geometry.as_dict()
+    for name, wall in numbers.items():
+        radius = name.removesuffix("_wall") + "_radius"
+        if name.endswith("_wall") and wall > numbers[radius]:
+            raise geometry.invalid(name, wall, f"at most {radius}, {numbers[radius]:g} m")

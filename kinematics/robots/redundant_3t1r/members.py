@@ -1,0 +1,36 @@
+"""The redundant 3T-1R robot's rods and platform as members."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import TYPE_CHECKING
+
+import casadi as ca
+
+from kinematics.machine import Member, Tube
+from kinematics.robots.redundant_3t1r.geometry import LIMBS, PARALLELOGRAMS
+from kinematics.robots.shared import SIDES
+
+if TYPE_CHECKING:
+    from kinematics.robots.redundant_3t1r.redundant_3t1r import Redundant3T1R
+
+_HELD_AT = ("B1", "B1", "B3", "B3", "B5", "B5")  # arms 1 and 2, 3 and 4, 5 and 6 share their platform points
+
+
+def members(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+    """The rods of all arms; and the platform: an upright bar from B1 to B5, a level one from its
+    middle to B3, and an upright one there, which holds the rods of arms 3 and 4.
+    """
+    rails, platform = robot.rail_points(joints, g), robot.platform_points(pose, g)
+    found = []
+    for i in range(LIMBS):
+        sides = SIDES if i in PARALLELOGRAMS else {"": 0.0}
+        for name, side in sides.items():
+            aside, held = ca.vertcat(0, 0, side * g.parallelogram_width), (f"A{i + 1}", _HELD_AT[i])
+            tube = Tube(rails[:, i] + aside, platform[:, i] + aside, g.rod_radius, g.rod_wall)
+            found.append(Member(f"rod {i + 1}{name}", held, "rod", (tube,)))
+    middle, half = (platform[:, 0] + platform[:, 4]) / 2, g.platform_thickness / 2
+    stud = ca.vertcat(0, 0, g.parallelogram_width / 2)
+    bars = ((platform[:, 0], platform[:, 4]), (middle, platform[:, 2]), (platform[:, 2] - stud, platform[:, 2] + stud))
+    shapes = tuple(Tube(start, end, half, half) for start, end in bars)
+    return [*found, Member("platform", ("B1", "B3", "B5"), "plate", shapes)]
