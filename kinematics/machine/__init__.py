@@ -18,6 +18,7 @@ from kinematics.machine.links import (
 )
 from kinematics.machine.load import Load
 from kinematics.machine.materials import MATERIALS, Material
+from kinematics.machine.member_masses import arm_mass, mass_points, member_mass, rod_mass
 from kinematics.machine.members import (
     Member,
     Plate,
@@ -63,14 +64,18 @@ __all__ = [
     "TreeJoint",
     "Tube",
     "angle",
+    "arm_mass",
     "bar",
     "frame",
     "kind_of",
     "length",
+    "mass_points",
+    "member_mass",
     "numbers_of",
     "platform",
     "ratio",
     "require_walls",
+    "rod_mass",
     "screw_pitch",
     "shared_joints",
     "universal",

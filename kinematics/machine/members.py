@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import NamedTuple
@@ -28,6 +29,11 @@ class Tube(NamedTuple):
     end: ca.SX
     radius: ca.SX
     wall: ca.SX
+
+    @property
+    def area(self) -> ca.SX:
+        """Of the section [m^2]."""
+        return math.pi * self.wall * (2 * self.radius - self.wall)
 
 
 class Plate(NamedTuple):
@@ -56,6 +62,11 @@ class Member(NamedTuple):
     joints: tuple[str, ...]
     material: str
     shapes: tuple[Tube | Plate, ...]
+
+    @property
+    def tube(self) -> Tube:
+        """The first tube."""
+        return next(shape for shape in self.shapes if isinstance(shape, Tube))
 
 
 def bar(name: str, joints: tuple[str, ...], material: str, start: ca.SX, end: ca.SX, radius: ca.SX) -> Member:

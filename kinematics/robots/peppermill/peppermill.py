@@ -28,7 +28,9 @@ from kinematics.machine import (
     Rod,
     Rotor,
     Tube,
+    arm_mass,
     bar,
+    rod_mass,
 )
 from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.model import Build, FviBounds, Mechanism, Mode, Model, by_name
@@ -215,24 +217,27 @@ class Peppermill(Mechanism):
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Motors, carriages, proximal and distal links, nuts, platform, payload."""
-        i, bodies = self.inertia, Bodies(self.inertia.rod_middle)
+        i, bodies = self.inertia, Bodies()
+        links = self.structure.link.density * _link(pose[:3], pose[:3], g).area  # mass for each metre
+        given = i.proximal_mass, i.proximal_centre, i.proximal_factor
         _, carriages, elbows, nuts = self.points(pose, joints, g)
         eta = self.drives(g) @ joints
         bodies.rotors.extend(Rotor(i.motor, eta[k]) for k in range(4))
         for limb in range(2):
             carriage, link = carriages[:, limb], elbows[:, limb] - carriages[:, limb]
-            centre = i.proximal_centre * g.proximal_lengths[limb]
-            own = (i.proximal_factor - 1) * i.proximal_mass * centre**2  # beyond the particle at the centre of mass
+            mass, centre, factor = arm_mass(links * g.proximal_lengths[limb], i.proximal_hub, i.proximal_joint, given)
+            own = (factor - 1) * mass * (centre * g.proximal_lengths[limb]) ** 2  # beyond the particle at the centre
             slide, proximal, nut = (f"{name} {limb + 1}" for name in ("carriage", "proximal", "nut"))
             bodies.particles.extend(
                 [
                     Particle(slide, i.carriage_mass, carriage),
-                    Particle(proximal, i.proximal_mass, carriage + i.proximal_centre * link),
+                    Particle(proximal, mass, carriage + centre * link),
                     Particle(nut, i.nut_mass, nuts[:, limb]),
                 ]
             )
             bodies.rotors.append(Rotor(i.carriage + own, joints[2 + limb]))
-            bodies.rods.append(Rod(i.distal_mass, (nut, proximal), nuts[:, limb], elbows[:, limb]))
+            whole, middle = rod_mass(links * g.distal_lengths[limb], i.distal_joint, i.distal_mass, i.rod_middle)
+            bodies.rods.append(Rod(whole, middle, (nut, proximal), nuts[:, limb], elbows[:, limb]))
         bodies.particles.append(Particle("platform", i.platform_mass + payload, pose[:3]))
         bodies.rotors.append(Rotor(i.tool, pose[3]))
         return bodies

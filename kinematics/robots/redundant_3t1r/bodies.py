@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from kinematics.machine import Bodies, InertiaRecord, Particle, Rod, Rotor
+from kinematics.errors import InvalidField
+from kinematics.machine import Bodies, DriveTrain, InertiaRecord, Particle, Rod, Rotor, mass_points, rod_mass
 from kinematics.robots.redundant_3t1r.geometry import LIMBS, PARALLELOGRAMS
 
 if TYPE_CHECKING:
@@ -21,25 +22,47 @@ class Redundant3T1RInertia(InertiaRecord):
 
     Attributes:
         slide_mass: one carriage with the moving part of its linear motor.
-        rod_mass: one rod; arms 3 and 4 have two.
-        platform_mass: at the tool centre point P, where the payload sits too.
-        platform_inertia: of the platform about e_z through P.
+        rod_joint: the joint at each end of a rod.
+        rod_mass: one rod; arms 3 and 4 have two; None takes that of its tube and joints.
+        platform_fittings, fittings_inertia: what the platform carries at the tool centre point P, and its inertia about
+            e_z through P.
+        platform_mass, platform_inertia: of the whole platform, at P and about e_z through P; None takes those of bars
+            and fittings. Both are given, or none. The payload is at P too.
     """
 
     slide_mass: float = 5.0
-    rod_mass: float = 0.9
-    platform_mass: float = 3.0
-    platform_inertia: float = 0.015
+    rod_joint: float = 0.335
+    rod_mass: float | None = None
+    platform_fittings: float = 2.65
+    fittings_inertia: float = 0.012
+    platform_mass: float | None = None
+    platform_inertia: float | None = None
+    drive_train: DriveTrain = field(default=DriveTrain(stiffness=5e7), kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if (self.platform_mass is None) != (self.platform_inertia is None):
+            lacks = "platform_mass" if self.platform_mass is None else "platform_inertia"
+            raise InvalidField("Redundant3T1RInertia", lacks, None, "a number, as the other of the two is given")
 
 
 def bodies(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
     """Slides, rods, platform and payload."""
-    i, found = robot.inertia, Bodies(robot.inertia.rod_middle)
-    rails, platform = robot.rail_points(joints, g), robot.platform_points(pose, g)
+    i, found = robot.inertia, Bodies()
+    rails, platform, lengths = robot.rail_points(joints, g), robot.platform_points(pose, g), robot.arm_lengths(g)
+    *rods, moved = robot.members(pose, joints, g)
+    per_length = robot.structure.of(rods[0]).density * rods[0].tube.area
     for limb in range(LIMBS):
-        slide, rods = f"slide {limb + 1}", i.rod_mass * (2 if limb in PARALLELOGRAMS else 1)
+        slide, several = f"slide {limb + 1}", 2 if limb in PARALLELOGRAMS else 1
+        single, middle = rod_mass(per_length * lengths[limb], i.rod_joint, i.rod_mass, i.rod_middle)
         found.particles.append(Particle(slide, i.slide_mass, rails[:, limb]))
-        found.rods.append(Rod(rods, (slide, "platform"), rails[:, limb], platform[:, limb]))
-    found.particles.append(Particle("platform", i.platform_mass + payload, pose[:3]))
-    found.rotors.append(Rotor(i.platform_inertia, pose[3]))
+        found.rods.append(Rod(several * single, middle, (slide, "platform"), rails[:, limb], platform[:, limb]))
+    mass, inertia = i.platform_mass, i.platform_inertia
+    if mass is None or inertia is None:
+        rest = robot.members(ca.SX(4, 1), joints, g)[-1]
+        bars = mass_points(rest, moved, robot.structure.of(moved).density)
+        found.particles.extend(Particle("platform", *point) for point in bars)
+        mass, inertia = i.platform_fittings, i.fittings_inertia
+    found.particles.append(Particle("platform", mass + payload, pose[:3]))
+    found.rotors.append(Rotor(inertia, pose[3]))
     return found
