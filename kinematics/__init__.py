@@ -37,7 +37,19 @@ from kinematics.evaluation import (
     over_spans,
     run_through,
 )
-from kinematics.machine import UNIFORM, DriveTrain, FieldKind, GeometryRecord, InertiaRecord, JointRanges, kind_of
+from kinematics.machine import (
+    MATERIALS,
+    UNIFORM,
+    DriveTrain,
+    FieldKind,
+    GeometryRecord,
+    InertiaRecord,
+    JointRanges,
+    Load,
+    Material,
+    Structure,
+    kind_of,
+)
 from kinematics.margins import CLEARANCE, PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
@@ -68,6 +80,7 @@ __all__ = [
     "CLEARANCE",
     "CORES",
     "LENGTHS",
+    "MATERIALS",
     "MECHANISMS",
     "PASSIVE_JOINT",
     "STANDARD",
@@ -94,8 +107,10 @@ __all__ = [
     "JointMotion",
     "JointRanges",
     "LinkwrightError",
+    "Load",
     "LostPaths",
     "Margin",
+    "Material",
     "Measure",
     "Mechanism",
     "Model",
@@ -109,6 +124,7 @@ __all__ = [
     "Redundant3T1R",
     "SelfMotion",
     "SingularArchitecture",
+    "Structure",
     "ToShow",
     "UnreachablePose",
     "Value",

@@ -25,7 +25,6 @@ from kinematics.machine.members import (
     Tube,
     bar,
     platform,
-    require_walls,
     shared_joints,
     unjoined,
 )
@@ -74,7 +73,6 @@ __all__ = [
     "numbers_of",
     "platform",
     "ratio",
-    "require_walls",
     "rod_mass",
     "screw_pitch",
     "shared_joints",

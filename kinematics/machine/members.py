@@ -10,8 +10,6 @@ from typing import NamedTuple
 import casadi as ca
 import numpy as np
 
-from kinematics.machine.geometry_record import GeometryRecord
-
 _ONE = 1e-9  # of their size: points that are no further apart are one
 _FLAT = 1e-9  # of their size: what rounding leaves of a plane
 
@@ -120,16 +118,3 @@ def _hull(flat: np.ndarray) -> list[int]:
         return kept[:-1]
 
     return chain(order) + chain(order[::-1])
-
-
-def require_walls(geometry: GeometryRecord) -> None:
-    """Check that no wall is thicker than its tube's radius: the fields `x_wall` and `x_radius` belong together.
-
-    Raises:
-        InvalidGeometry: naming the wall.
-    """
-    numbers = geometry.as_dict()
-    for name, wall in numbers.items():
-        radius = name.removesuffix("_wall") + "_radius"
-        if name.endswith("_wall") and wall > numbers[radius]:
-            raise geometry.invalid(name, wall, f"at most {radius}, {numbers[radius]:g} m")

@@ -7,6 +7,7 @@ twists (v of O_E, omega) and wrenches (force, moment about O_E) are expressed in
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import Any
 
@@ -214,10 +215,10 @@ class GoughStewart(SixLegs):
 
     # Masses and drawing.
 
-    def conditions(self) -> dict[str, Any]:
+    def conditions(self, records: Sequence[str] = ()) -> dict[str, Any]:
         """Home too, where the joints rest there."""
         at_home = {"home": self.home.tolist()} if self.ranges.rest is None else {}
-        return super().conditions() | at_home
+        return super().conditions(records) | at_home
 
     def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:
         """Universal joints on the base and spherical ones on the platform, mounted along the legs at `ranges.rest`."""

@@ -9,6 +9,7 @@ of the paper. If an equation in print is wrong, the expression here follows from
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cached_property
 from types import SimpleNamespace
 from typing import Any
@@ -87,10 +88,10 @@ class Peppermill(Mechanism):
             return limbs.SIDES[0]
         return (1 if first > 0.0 else -1, 1 if second > 0.0 else -1)
 
-    def conditions(self) -> dict[str, Any]:
+    def conditions(self, records: Sequence[str] = ()) -> dict[str, Any]:
         """As in the base, with unusual sides too, as the ranges of the distal links' ends depend on them."""
         sides = {} if self.sides == limbs.SIDES[0] else {"sides": self.sides}
-        return super().conditions() | sides
+        return super().conditions(records) | sides
 
     # The closure and its closed forms.
 

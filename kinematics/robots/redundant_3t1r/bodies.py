@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from kinematics.errors import InvalidField
 from kinematics.machine import Bodies, DriveTrain, InertiaRecord, Particle, Rod, Rotor, mass_points, rod_mass
 from kinematics.robots.redundant_3t1r.geometry import LIMBS, PARALLELOGRAMS
 
@@ -26,8 +25,8 @@ class Redundant3T1RInertia(InertiaRecord):
         rod_mass: one rod; arms 3 and 4 have two; None takes that of its tube and joints.
         platform_fittings, fittings_inertia: what the platform carries at the tool centre point P, and its inertia about
             e_z through P.
-        platform_mass, platform_inertia: of the whole platform, at P and about e_z through P; None takes those of bars
-            and fittings. Both are given, or none. The payload is at P too.
+        platform_mass, platform_inertia: of the whole platform, its mass at P, and about e_z through P; None takes that
+            of bars and fittings. The payload is at P too.
     """
 
     slide_mass: float = 5.0
@@ -38,12 +37,6 @@ class Redundant3T1RInertia(InertiaRecord):
     platform_mass: float | None = None
     platform_inertia: float | None = None
     drive_train: DriveTrain = field(default=DriveTrain(stiffness=5e7), kw_only=True)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if (self.platform_mass is None) != (self.platform_inertia is None):
-            lacks = "platform_mass" if self.platform_mass is None else "platform_inertia"
-            raise InvalidField("Redundant3T1RInertia", lacks, None, "a number, as the other of the two is given")
 
 
 def bodies(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
@@ -57,12 +50,16 @@ def bodies(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace,
         single, middle = rod_mass(per_length * lengths[limb], i.rod_joint, i.rod_mass, i.rod_middle)
         found.particles.append(Particle(slide, i.slide_mass, rails[:, limb]))
         found.rods.append(Rod(several * single, middle, (slide, "platform"), rails[:, limb], platform[:, limb]))
-    mass, inertia = i.platform_mass, i.platform_inertia
-    if mass is None or inertia is None:
-        rest = robot.members(ca.SX(4, 1), joints, g)[-1]
-        bars = mass_points(rest, moved, robot.structure.of(moved).density)
-        found.particles.extend(Particle("platform", *point) for point in bars)
-        mass, inertia = i.platform_fittings, i.fittings_inertia
+    rest = robot.members(ca.SX(4, 1), joints, g)[-1]
+    density = robot.structure.of(moved).density
+    mass, inertia = ca.SX(i.platform_fittings), ca.SX(i.fittings_inertia)
+    if i.platform_mass is None and i.platform_inertia is None:
+        found.particles.extend(Particle("platform", *point) for point in mass_points(rest, moved, density))
+    else:
+        own = mass_points(rest, rest, density)
+        mass = mass + ca.sum1(ca.vertcat(*(m for m, _ in own))) if i.platform_mass is None else ca.SX(i.platform_mass)
+        about = ca.sum1(ca.vertcat(*(m * ca.sumsqr(p[:2]) for m, p in own)))
+        inertia = inertia + about if i.platform_inertia is None else ca.SX(i.platform_inertia)
     found.particles.append(Particle("platform", mass + payload, pose[:3]))
     found.rotors.append(Rotor(inertia, pose[3]))
     return found
