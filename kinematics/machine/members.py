@@ -54,12 +54,14 @@ class Member(NamedTuple):
         joints: what holds it, by any names. Two members that share a joint are joined, and may touch.
         material: which field of `Structure` it is made of.
         shapes: what it consists of.
+        link: the link of `bodies` that it is part of, where that has another name.
     """
 
     name: str
     joints: tuple[str, ...]
     material: str
     shapes: tuple[Tube | Plate, ...]
+    link: str = ""
 
     @property
     def tube(self) -> Tube:

@@ -169,7 +169,7 @@ class Par4(RotaryLimbs):
         ends, thick = cls.platform_points(pose, g), g.bar_thickness / 2
         middle = cls.half_bar(pose[3] / g.amplification, g)
         at = {"half 1": (pose[:3] - middle, (0, 1)), "half 2": (pose[:3] + middle, (2, 3))}
-        platform = [bar("bars", tuple(at), "plate", at["half 1"][0], at["half 2"][0], thick)]
+        platform = [bar("bars", tuple(at), "plate", at["half 1"][0], at["half 2"][0], thick)._replace(link="crank")]
         held = studs(ends, cls.limbs(g).axes(), g.parallelogram_width)
         for name, (centre, limbs) in at.items():
             spokes = [Tube(centre, ends[:, i], thick, thick) for i in limbs]

@@ -252,12 +252,20 @@ class Peppermill(Mechanism):
         """
         apart = _E_Z @ (g.nut_spacing / 2 * ca.DM([[-1, 1]]))
         carriages, elbows, nuts = (points + apart for points in cls.points(pose, joints, g)[1:])
-        found = [bar("screws", ("nut 1", "nut 2"), "screw", nuts[:, 0], nuts[:, 1], g.screw_radius)]
+        found = [
+            bar("screws", ("nut 1", "nut 2"), "screw", nuts[:, 0], nuts[:, 1], g.screw_radius)._replace(link="tool")
+        ]
         for i, k in enumerate(("1", "2")):
             slide, elbow, nut = f"carriage {k}", f"elbow {k}", f"nut {k}"
             found += [
-                Member(f"proximal link {k}", (slide, elbow), "link", (_link(carriages[:, i], elbows[:, i], g),)),
-                Member(f"distal link {k}", (elbow, nut), "link", (_link(elbows[:, i], nuts[:, i], g),)),
+                Member(
+                    f"proximal link {k}",
+                    (slide, elbow),
+                    "link",
+                    (_link(carriages[:, i], elbows[:, i], g),),
+                    f"proximal {k}",
+                ),
+                Member(f"distal link {k}", (elbow, nut), "link", (_link(elbows[:, i], nuts[:, i], g),), f"rod {k}"),
             ]
         return found
 

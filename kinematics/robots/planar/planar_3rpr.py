@@ -15,6 +15,7 @@ from kinematics.machine import (
     Connection,
     JointRanges,
     Link,
+    Member,
     Pair,
     Particle,
     Reference,
@@ -109,6 +110,10 @@ class Planar3RPR(Planar):
         slides = (TreeJoint("xy"[k], "slide", AXES[k], ORIGIN, pose[k]) for k in range(2))
         chain.append(Link("platform", None, (*slides, TreeJoint("theta", "hinge", AXES[2], place, pose[2]))))
         return Tree(tuple(chain), connections=tuple(connections))
+
+    def members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+        """Legs by the links' names."""
+        return [m._replace(link=m.name.replace("rod", "leg")) for m in super().members(pose, joints, g)]
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Drives that the joints move; platform, and half of each leg at its end. The other half stays on the base."""
