@@ -1,4 +1,4 @@
-"""Motion and torque of the joints and of the actuators."""
+"""Motion and torque of the joints and of the actuators; stiffness and mass at the tool."""
 
 from kinematics.dynamics.actuators import from_actuators, to_actuators
 from kinematics.dynamics.chain_rule import JointMotion, actuator_motion, derivatives_along, joint_motion
@@ -10,18 +10,32 @@ from kinematics.dynamics.drive_torque import (
     require_payload,
     torques,
 )
+from kinematics.dynamics.stiffness import (
+    Transmission,
+    mass_matrix,
+    stiffness_matrix,
+    stiffness_parts,
+    sum_of,
+    transmission,
+)
 
 __all__ = [
     "GRAVITY",
     "JointMotion",
+    "Transmission",
     "actuator_motion",
     "derivatives_along",
     "friction",
     "from_actuators",
     "inverse_dynamics",
     "joint_motion",
+    "mass_matrix",
     "moving_bodies",
     "require_payload",
+    "stiffness_matrix",
+    "stiffness_parts",
+    "sum_of",
     "to_actuators",
     "torques",
+    "transmission",
 ]
