@@ -13,9 +13,11 @@ from kinematics.dynamics.drive_torque import (
 from kinematics.dynamics.stiffness import (
     Transmission,
     mass_matrix,
-    stiffness_matrix,
+    mass_matrix_symbolic,
+    platform_stiffness,
     stiffness_parts,
     sum_of,
+    tool_stiffness,
     transmission,
 )
 
@@ -30,12 +32,14 @@ __all__ = [
     "inverse_dynamics",
     "joint_motion",
     "mass_matrix",
+    "mass_matrix_symbolic",
     "moving_bodies",
+    "platform_stiffness",
     "require_payload",
-    "stiffness_matrix",
     "stiffness_parts",
     "sum_of",
     "to_actuators",
+    "tool_stiffness",
     "torques",
     "transmission",
 ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import casadi as ca
 
-from kinematics.dynamics import mass_matrix, stiffness_parts
+from kinematics.dynamics import mass_matrix_symbolic, stiffness_parts
 from kinematics.machine import TURN
 from kinematics.margins.stiffness import Pencil, WeakestDirection
 from kinematics.model import Mechanism
@@ -29,7 +29,7 @@ class NaturalFrequency(WeakestDirection):
         n, freedoms = len(robot.pose_names), parts[0][0].shape[0]
         order = [*range(n, freedoms), *range(n)]
         moved = [(wrenches[order, :], inner) for wrenches, inner in parts]
-        return Pencil(moved, mass_matrix(robot, robot.load.payload))
+        return Pencil(moved, mass_matrix_symbolic(robot, robot.load.payload))
 
     def eigenvalue(self, bound: ca.SX) -> ca.SX:
         """(2 pi f)^2."""

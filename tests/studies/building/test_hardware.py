@@ -59,7 +59,9 @@ def study_of(folder: Path, text: str) -> Study:
     return load_study(read_toml(folder / "study.toml"))
 
 
-def test_a_robot_has_its_studys_masses_drives_and_ranges_and_what_it_leaves_out_is_the_mechanisms(tmp_path: Path) -> None:
+def test_a_robot_has_its_studys_masses_drives_and_ranges_and_else_its_own(
+    tmp_path: Path,
+) -> None:
     robot = robot_of(study_of(tmp_path, SMALL + HARDWARE))
     assert (robot.inertia, robot.ranges) == (INERTIA, RANGES)
     plain = robot_of(study_of(tmp_path, SMALL))
