@@ -17,7 +17,7 @@ from kinematics.dynamics.drive_torque import moving_bodies, require_payload
 from kinematics.errors import InvalidValue
 from kinematics.evaluation import evaluate
 from kinematics.machine import Cut
-from kinematics.mathematics import adjugate
+from kinematics.mathematics import adjugate, cholesky, lower_solved
 from kinematics.model import Build, Mechanism, Model
 
 _REGULAR = 1e12  # a condition number that an inverse bears
@@ -82,16 +82,14 @@ def transmission_at_pose(robot: Mechanism) -> tuple[ca.SX, ca.SX] | None:
 
 
 def stiffness_symbolic(wrenches: ca.SX, compliance: ca.SX) -> ca.SX:
-    """(f, f) W C^-1 W^T, block by block of C; entries beyond the diagonal are computed once."""
+    """(f, f) W C^-1 W^T = H^T H with H = L^-1 W^T and C = L L^T, block by block of C."""
     count = wrenches.shape[0]
     result = ca.SX(count, count)
     for block in _blocks(compliance):
-        own = wrenches[:, block]
-        cofactors, det = adjugate(compliance[block, block], symmetric=True)
-        half = own @ (cofactors / det)
+        half = lower_solved(cholesky(compliance[block, block]), wrenches[:, block].T)
         for i in range(count):
             for j in range(i + 1):
-                result[i, j] += ca.dot(half[i, :], own[j, :])
+                result[i, j] += ca.dot(half[:, i], half[:, j])
     return ca.tril2symm(result)
 
 
