@@ -13,7 +13,10 @@ from kinematics.dynamics import (
     from_actuators,
     inverse_dynamics,
     joint_motion,
+    mass_matrix,
+    platform_stiffness,
     to_actuators,
+    tool_stiffness,
     torques,
 )
 from kinematics.errors import (
@@ -50,7 +53,7 @@ from kinematics.machine import (
     Structure,
     kind_of,
 )
-from kinematics.margins import CLEARANCE, PASSIVE_JOINT, STANDARD
+from kinematics.margins import CLEARANCE, INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
 from kinematics.model import (
@@ -79,10 +82,12 @@ __all__ = [
     "ARCHITECTURES",
     "CLEARANCE",
     "CORES",
+    "INTERNAL_STIFFNESS",
     "LENGTHS",
     "MATERIALS",
     "MECHANISMS",
     "PASSIVE_JOINT",
+    "ROTATIONAL_STIFFNESS",
     "STANDARD",
     "UNIFORM",
     "Architecture",
@@ -145,16 +150,19 @@ __all__ = [
     "joint_motion",
     "kind_of",
     "loop_mobility",
+    "mass_matrix",
     "mjcf",
     "mobility_of_identical_chains",
     "over_spans",
     "plain",
+    "platform_stiffness",
     "positive",
     "rounded_down",
     "rounded_up",
     "run_through",
     "sides",
     "to_actuators",
+    "tool_stiffness",
     "torques",
     "whole",
 ]

@@ -7,6 +7,7 @@ from itertools import combinations
 import casadi as ca
 
 _SWEEPS = 7  # each squares what is left between the columns, from the third on
+_ALIKE = 1e-13  # of their squares: columns so alike are hardly rotated, and their gradient is a number
 _TINY = 1e-300  # in place of 0, where two columns have no length
 
 
@@ -21,7 +22,8 @@ def singular_values(matrix: ca.SX) -> ca.SX:
         for p, q in combinations(range(len(columns)), 2):
             u, v = columns[p], columns[q]
             gap, product = ca.sumsqr(v) - ca.sumsqr(u), ca.dot(u, v)
-            root = ca.fabs(gap) + ca.sqrt(gap**2 + 4 * product**2)
+            alike = _ALIKE * (ca.sumsqr(u) + ca.sumsqr(v))
+            root = ca.fabs(gap) + ca.sqrt(gap**2 + 4 * product**2 + alike**2)
             tangent = ca.if_else(gap < 0, -2, 2) * product / (root + _TINY)
             cosine = 1 / ca.sqrt(1 + tangent**2)
             columns[p], columns[q] = cosine * (u - tangent * v), cosine * (tangent * u + v)

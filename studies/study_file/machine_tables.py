@@ -15,7 +15,7 @@ Ranges = dict[str, Numbers | tuple[tuple[float, float], ...]]
 
 
 class DriveTrainTable(StudyTable):
-    """The gear, motor and friction of each actuator, as in `kinematics.DriveTrain`; None takes its default."""
+    """Of each actuator, as in `kinematics.DriveTrain`; None takes the mechanism's own value."""
 
     gear_ratio: Annotated[
         Numbers | None, Key("a number > 0, or one a joint (rad of the motor for one rad, or one m, of the joint)")
@@ -25,10 +25,10 @@ class DriveTrainTable(StudyTable):
     """The inertia of the rotor, on its own side of the gear."""
     coulomb: Annotated[Numbers | None, Key("a number >= 0, or one a joint (N m, or N)")] = None
     """The dry friction at the joint."""
-    stiffness: Annotated[Numbers | None, Key("a number > 0, or one a joint (N m/rad, or N/m)")] = None
-    """The stiffness of gear and servo loop at the joint."""
     viscous: Annotated[Numbers | None, Key("a number >= 0, or one a joint (N m s/rad, or N s/m)")] = None
     """The friction at the joint for each unit of speed. The law `toppra` does not allow it."""
+    stiffness: Annotated[Numbers | None, Key("a number > 0, or one a joint (N m/rad, or N/m)")] = None
+    """How hard gear and servo loop resist at the joint."""
 
 
 class MaterialTable(StudyTable):
@@ -75,7 +75,7 @@ class InertiaTable(StudyTable):
     masses: dict[str, Numbers] = Field(default_factory=dict)
     """The fields of the mechanism's `Inertia` [SI]."""
     drive_train: Annotated[DriveTrainTable, table_of(DriveTrainTable)] = DriveTrainTable()
-    """The gear, motor and friction of each actuator."""
+    """The gear, motor, friction and stiffness of each actuator."""
 
     @model_validator(mode="before")
     @classmethod

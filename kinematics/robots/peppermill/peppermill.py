@@ -33,11 +33,12 @@ from kinematics.machine import (
     bar,
     rod_mass,
 )
-from kinematics.margins import PASSIVE_JOINT, STANDARD
+from kinematics.margins import INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.model import Build, FviBounds, Mechanism, Mode, Model, by_name
 from kinematics.robots.peppermill import limbs
 from kinematics.robots.peppermill.geometry import PeppermillGeometry, PeppermillInertia, PeppermillRanges
 from kinematics.robots.peppermill.links import links
+from kinematics.robots.peppermill.statics import statics
 
 _E_Z = ca.DM([0, 0, 1])
 
@@ -62,7 +63,7 @@ class Peppermill(Mechanism):
     counts_turns = True
     # 750 W servos at 3000 rpm and three times their rated torque; 2.5 m/s and 50 N are wanted. All are our assumptions.
     fvi_bounds = FviBounds(joint_speed=314.0, joint_effort=7.2, speed=2.5, force=50.0)
-    margins = by_name(*STANDARD, PASSIVE_JOINT)
+    margins = by_name(*STANDARD, ROTATIONAL_STIFFNESS, INTERNAL_STIFFNESS, PASSIVE_JOINT)
 
     @property
     def characteristic_length(self) -> float:
@@ -244,28 +245,30 @@ class Peppermill(Mechanism):
         return bodies
 
     @classmethod
-    def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
-        """Proximal and distal links, and the screws between the nuts.
+    def points_apart(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX, ca.SX]:
+        """A_i, B_i and P_i, each (3, 2), of the machine as it is built.
 
         The paper's nuts coincide at theta = 0. Limb 1 is moved down and limb 2 up, by half of `nut_spacing` each: the
         same machine with its drive axes further apart.
         """
         apart = _E_Z @ (g.nut_spacing / 2 * ca.DM([[-1, 1]]))
         carriages, elbows, nuts = (points + apart for points in cls.points(pose, joints, g)[1:])
-        found = [
-            bar("screws", ("nut 1", "nut 2"), "screw", nuts[:, 0], nuts[:, 1], g.screw_radius)._replace(link="tool")
-        ]
+        return carriages, elbows, nuts
+
+    statics = statics
+
+    @classmethod
+    def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+        """Proximal and distal links, and the screws between the nuts; all at `points_apart`."""
+        carriages, elbows, nuts = cls.points_apart(pose, joints, g)
+        screws = bar("screws", ("nut 1", "nut 2"), "screw", nuts[:, 0], nuts[:, 1], g.screw_radius)
+        found = [screws._replace(link="tool")]
         for i, k in enumerate(("1", "2")):
             slide, elbow, nut = f"carriage {k}", f"elbow {k}", f"nut {k}"
+            near, far = (_link(*ends, g) for ends in ((carriages[:, i], elbows[:, i]), (elbows[:, i], nuts[:, i])))
             found += [
-                Member(
-                    f"proximal link {k}",
-                    (slide, elbow),
-                    "link",
-                    (_link(carriages[:, i], elbows[:, i], g),),
-                    f"proximal {k}",
-                ),
-                Member(f"distal link {k}", (elbow, nut), "link", (_link(elbows[:, i], nuts[:, i], g),), f"rod {k}"),
+                Member(f"proximal link {k}", (slide, elbow), "link", (near,), f"proximal {k}"),
+                Member(f"distal link {k}", (elbow, nut), "link", (far,), f"rod {k}"),
             ]
         return found
 

@@ -7,7 +7,7 @@ Pose [x, y, theta]. Given the joints, all three are the same problem: three plat
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import casadi as ca
@@ -18,8 +18,10 @@ from kinematics.evaluation import evaluate
 from kinematics.machine import (
     TURN,
     Bodies,
+    DriveTrain,
     GeometryRecord,
     InertiaRecord,
+    LimbStatics,
     Member,
     Particle,
     Points,
@@ -29,11 +31,11 @@ from kinematics.machine import (
     platform,
     shared_joints,
 )
-from kinematics.margins import STANDARD
+from kinematics.margins import ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.mathematics import distinct
 from kinematics.model import Build, Mechanism, Model, by_name, joined_to_home
 from kinematics.robots.planar.forward import placements, rods_and_determinant
-from kinematics.robots.shared import ALIKE, twins
+from kinematics.robots.shared import ALIKE, rod_statics, rods_of, twins
 
 _AROUND = [0, 1, 2, 0]
 _FAR = 1e60  # [m] or [rad], its fifth power still a double
@@ -95,6 +97,7 @@ class PlanarInertia(InertiaRecord):
         platform_joint: mass of the platform's part of each joint, at B_i.
         platform_mass: three equal particles at the B_i; None takes the plate and the joints. The payload is a particle
             at the tool point.
+        drive_train: screw, bearings and servo loop give way by 0.5 um for each N.
     """
 
     drive: float = 1.0
@@ -102,6 +105,7 @@ class PlanarInertia(InertiaRecord):
     link_mass: float | None = None
     platform_joint: float = 0.137
     platform_mass: float | None = None
+    drive_train: DriveTrain = field(default=DriveTrain(stiffness=2e6), kw_only=True)
 
 
 class Planar(Mechanism):
@@ -112,7 +116,7 @@ class Planar(Mechanism):
     pose_names = ("x", "y", "theta")
     joint_names = ("q1", "q2", "q3")
     rotations = (2,)
-    margins = by_name(*STANDARD)
+    margins = by_name(*STANDARD, ROTATIONAL_STIFFNESS)
 
     @property
     def characteristic_length(self) -> float:
@@ -176,6 +180,19 @@ class Planar(Mechanism):
         ]
         shapes = platform(ends, np.array(self.geometry.platform_points), g.plate_thickness)
         return [*links, Member("platform", tuple(held), "plate", shapes)]
+
+    def statics(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[LimbStatics]:
+        """Each leg's link in tension, on its drive. Only the freedoms in the plane count."""
+        members = self.members(pose, joints, g)
+        centres, radii = self.circles(joints, g)
+        rods, lengths = self.platform_points(pose, g) - centres, radii + 0 * joints
+        gaps = (ca.sum1(rods * rods).T - radii**2) / 2
+        along, per_length = rods @ ca.diag(1 / lengths), ca.diag(1 / lengths)
+        wrenches, efforts = (ca.jacobian(gaps, v).T @ per_length for v in (pose, joints))
+        return [
+            rod_statics(rods_of(i, members), self.structure, -wrenches[:, i], along[:, i], lengths[i], efforts[:, i])
+            for i in range(3)
+        ]
 
     @staticmethod
     def link(start: ca.SX, end: ca.SX, g: SimpleNamespace) -> Tube:

@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.machine import Bodies, GeometryRecord, JointRanges, Member, Pair, angle, length, shared_joints
+from kinematics.machine import (
+    Bodies,
+    DriveTrain,
+    GeometryRecord,
+    JointRanges,
+    Member,
+    Pair,
+    angle,
+    length,
+    shared_joints,
+)
 from kinematics.model import FviBounds
 from kinematics.robots.planar.planar import AZIMUTHS, Planar, PlanarGeometry, PlanarInertia
 from kinematics.robots.shared import Limbs, RotaryLimbs, arms_and_rods, radial_directions
@@ -36,6 +46,7 @@ class Planar3RRRInertia(PlanarInertia):
         arm_hub, arm_joint: masses at a third of an arm, where it is joined to its drive, and at its end.
         arm_mass, arm_centre, arm_factor: the arm's mass, its centre of mass c as a fraction of L_i, and its inertia
             about the joint over m c^2; None takes those of tube, hub and joint.
+        drive_train: gear and servo loop give way by 1e-4 rad for each N m.
     """
 
     drive: float = 0.005
@@ -44,6 +55,7 @@ class Planar3RRRInertia(PlanarInertia):
     arm_mass: float | None = None
     arm_centre: float | None = None
     arm_factor: float | None = None
+    drive_train: DriveTrain = field(default=DriveTrain(stiffness=1e4), kw_only=True)
 
     @property
     def rod_joint(self) -> float:
@@ -107,6 +119,8 @@ class Planar3RRR(Planar, RotaryLimbs):
             for i in range(3)
         ]
         return arms + super().members(pose, joints, g)
+
+    statics = RotaryLimbs.statics
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, drives, rods and platform."""

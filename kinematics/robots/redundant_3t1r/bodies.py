@@ -27,6 +27,7 @@ class Redundant3T1RInertia(InertiaRecord):
             e_z through P.
         platform_mass, platform_inertia: of the whole platform, its mass at P, and about e_z through P; None takes that
             of bars and fittings. The payload is at P too.
+        drive_train: the servo loop of each linear motor gives way by 0.1 um for each N.
     """
 
     slide_mass: float = 5.0
@@ -36,7 +37,7 @@ class Redundant3T1RInertia(InertiaRecord):
     fittings_inertia: float = 0.012
     platform_mass: float | None = None
     platform_inertia: float | None = None
-    drive_train: DriveTrain = field(default=DriveTrain(stiffness=5e7), kw_only=True)
+    drive_train: DriveTrain = field(default=DriveTrain(stiffness=1e7), kw_only=True)
 
 
 def bodies(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:

@@ -1,0 +1,185 @@
+"""Stiffness of the platform in its weakest direction: force over displacement, or moment over turn.
+
+Each of these margins holds some freedoms of the platform and leaves the others free: those carry no load, and follow.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import NamedTuple
+
+import casadi as ca
+import numpy as np
+
+from kinematics.arrays import Array
+from kinematics.dynamics import stiffness_symbolic, transmission_at_pose
+from kinematics.mathematics import row_sums, smallest_eigenvalue
+from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
+
+_SURE = 1e-9  # by what a row sum, about 1 in the middle of a box, must be above 0
+_ITERATIONS = 8
+
+
+class Pencil(NamedTuple):
+    """Whose smallest x with K - x diag(0, E) singular is wanted, for K = W C^-1 W^T.
+
+    Attributes:
+        wrenches: W (f, k) on the freedoms that are not held.
+        compliance: C (k, k), positive definite.
+        weight: E (e, e), positive definite, of the last e freedoms. The others are free.
+    """
+
+    wrenches: ca.SX
+    compliance: ca.SX
+    weight: ca.SX
+
+    def smallest(self) -> ca.SX:
+        """x."""
+        return smallest_eigenvalue(stiffness_symbolic(self.wrenches, self.compliance), self.weight)
+
+    def shifted(self, x: ca.SX, free: ca.SX) -> ca.SX:
+        """diag(0, x E) (f, f), less `free`: K for K - x diag(0, E)."""
+        rest = self.wrenches.shape[0] - self.weight.shape[0]
+        return free - x * ca.diagcat(ca.SX(rest, rest), self.weight)
+
+    def balance(self, x: ca.SX) -> ca.SX:
+        """(k + f, k + f) [[-C, W^T], [W, -x diag(0, E)]]: forces and motions in balance. It needs no inverse of C."""
+        below = self.shifted(x, ca.SX(*[self.wrenches.shape[0]] * 2))
+        return ca.vertcat(ca.horzcat(-self.compliance, self.wrenches.T), ca.horzcat(self.wrenches, below))
+
+
+class WeakestDirection(Margin):
+    """The smallest eigenvalue of a stiffness; infinite where nothing gives way."""
+
+    @abstractmethod
+    def pencil(self, robot: Mechanism) -> Pencil | None:
+        """The eigenvalue problem at a pose; None if nothing gives way."""
+
+    def eigenvalue(self, bound: ca.SX) -> ca.SX:
+        """The eigenvalue for which the margin is `bound`."""
+        return bound
+
+    def of_eigenvalue(self, value: ca.SX) -> ca.SX:
+        """The margin for an eigenvalue."""
+        return value
+
+    def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
+        """One."""
+        pencil = self.pencil(robot)
+        return ca.SX(np.inf) if pencil is None else self.of_eigenvalue(pencil.smallest())
+
+    def to_refute(self, robot: Mechanism, claim: ClaimSymbols) -> ToShow:
+        """v^T (K - x diag(0, E)) v >= 0 for any v, such as the weakest direction in the middle of the box."""
+        pencil = self.pencil(robot)
+        if pencil is None:
+            return super().to_refute(robot, claim)
+        x = self.eigenvalue(ca.fmax(claim.bound, 0))  # a bound below 0 holds; its square would not say so
+        matrix = pencil.shifted(x, stiffness_symbolic(pencil.wrenches, pencil.compliance))
+        v = ca.SX.sym("scaling", matrix.shape[0], 1)
+        return ToShow(v.T @ matrix @ v, v, matrix, _weakest)
+
+    def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
+        """`Pencil.balance` is regular everywhere, and the margin is above the bound at one pose of the region.
+
+        The Schur complement of -C in it is K - x diag(0, E). So that is regular too, and none of its eigenvalues, all
+        above 0 at one pose, can change its sign in a connected region. A matrix Q is regular where D^-1 P Q D is, with
+        any P and any diagonal D; and that is, by Gershgorin, where the sum of each row, the moduli beside the diagonal
+        negative, is above 0. P is the inverse of Q in the middle of a box; D makes the rows alike.
+        """
+        pencil = self.pencil(robot) if positive else None
+        if pencil is None:
+            return super().to_show(robot, claim, inside, positive)
+        matrix = pencil.balance(self.eigenvalue(claim.bound))
+        n = matrix.shape[0]
+        scaling = ca.SX.sym("scaling", n, n + 1)
+        left, right = scaling[:, :n], ca.diag(scaling[:, n])
+        there = float(robot.margin(self.name, inside))
+        rows = row_sums(left @ (matrix @ right)) - _SURE
+        return ToShow(ca.vertcat(rows, there * (1 - _SURE) - claim.bound), scaling, matrix, _preconditioner)
+
+
+class _Directional(WeakestDirection):
+    """Of some freedoms, each of which counts alike."""
+
+    @abstractmethod
+    def directions(self, robot: Mechanism, freedoms: int) -> tuple[list[int], list[int]]:
+        """The freedoms that are free, and those whose stiffness is asked for; all others are held."""
+
+    def pencil(self, robot: Mechanism) -> Pencil | None:
+        """With the unit matrix as weight."""
+        found = transmission_at_pose(robot)
+        if found is None:
+            return None
+        wrenches, compliance = found
+        free, asked = self.directions(robot, wrenches.shape[0])
+        return Pencil(wrenches[free + asked, :], compliance, ca.SX.eye(len(asked)))
+
+
+def _internal(robot: Mechanism, freedoms: int) -> list[int]:
+    """What the pose does not have, such as tilts."""
+    return list(range(len(robot.pose_names), freedoms))
+
+
+class Stiffness(_Directional):
+    """Of a force at the tool point, the pose's rotations held. What the pose does not have, such as tilts, is free."""
+
+    name = "stiffness"
+    unit = "N/m"
+    words = "stiffness against a force at the tool point in the weakest direction, with the tool's rotation held"
+
+    def directions(self, robot: Mechanism, freedoms: int) -> tuple[list[int], list[int]]:
+        """The translations."""
+        asked = [k for k in range(len(robot.pose_names)) if k not in robot.rotations]
+        return _internal(robot, freedoms), asked
+
+
+class RotationalStiffness(_Directional):
+    """Of a moment on the tool, the tool point held. What the pose does not have, such as tilts, is free."""
+
+    name = "rotational_stiffness"
+    unit = "N m/rad"
+    words = "stiffness against a moment on the tool about the weakest axis, with the tool point held"
+
+    def directions(self, robot: Mechanism, freedoms: int) -> tuple[list[int], list[int]]:
+        """The rotations of the pose."""
+        return _internal(robot, freedoms), list(robot.rotations)
+
+
+class InternalStiffness(_Directional):
+    """Of moments that tilt the bodies that single rods hold, with the tool's pose held."""
+
+    name = "internal_stiffness"
+    unit = "N m/rad"
+    words = "stiffness against tilts of the bodies that the rods hold, with the tool's pose held"
+
+    def directions(self, robot: Mechanism, freedoms: int) -> tuple[list[int], list[int]]:
+        """What the pose does not have."""
+        return [], _internal(robot, freedoms)
+
+
+def _preconditioner(matrices: Array) -> Array:
+    """(k, n, n) Q -> (k, n, n + 1) D^-1 Q^-1, and in a last column D: Perron's vector of |Q^-1| |Q|, to a few digits.
+
+    With it the rows of D^-1 Q^-1 dQ D are alike for a change dQ of the same share of each entry.
+    """
+    usable = np.isfinite(matrices).all(axis=(1, 2))
+    eye = np.eye(matrices.shape[1])
+    matrices = np.where(usable[:, None, None], matrices, eye)
+    size = np.sqrt(np.abs(matrices).max(axis=2))  # symmetric, so that rows and columns alike are divided by it
+    inverse = np.linalg.pinv(matrices / size[:, :, None] / size[:, None, :]) / size[:, :, None] / size[:, None, :]
+    spread, weight = np.abs(inverse) @ np.abs(matrices), 1 / size
+    for _ in range(_ITERATIONS):
+        weight = (spread @ weight[:, :, None])[:, :, 0]
+        weight /= weight.max(axis=1, keepdims=True)
+    return np.concatenate([inverse / weight[:, :, None], weight[:, :, None]], axis=2)
+
+
+def _weakest(matrices: Array) -> Array:
+    """(k, n, n) -> (k, n, 1) unit eigenvectors of the smallest eigenvalue."""
+    matrices = np.atleast_3d(matrices)  # one entry may come as (k, 1)
+    usable = np.isfinite(matrices).all(axis=(1, 2))
+    _, vectors = np.linalg.eigh(np.where(usable[:, None, None], matrices, np.eye(matrices.shape[1])))
+    return vectors[:, :, :1]
+
+
+STIFFNESS, ROTATIONAL_STIFFNESS, INTERNAL_STIFFNESS = Stiffness(), RotationalStiffness(), InternalStiffness()
