@@ -42,6 +42,7 @@ from kinematics.margins import CLEARANCE, PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
 from kinematics.model import (
+    Bound,
     ClaimSymbols,
     FviBounds,
     Margin,
@@ -75,6 +76,7 @@ __all__ = [
     "Architecture",
     "Array",
     "BlockProgram",
+    "Bound",
     "BoxProgram",
     "ClaimSymbols",
     "Delta",

@@ -1,10 +1,11 @@
-"""Margins, one file for each kind: numbers that must be large enough at every pose, and what proves their bounds."""
+"""Margins, one file for each kind: numbers that must be good enough at every pose, and what proves their bounds."""
 
 from kinematics.margins.clearance import CLEARANCE
 from kinematics.margins.condition import INVERSE_CONDITION_NUMBER
 from kinematics.margins.force_capability import FORCE_CAPABILITY
 from kinematics.margins.isotropic import F_W, FVI, V_W
 from kinematics.margins.joint_travel import JOINT_TRAVEL
+from kinematics.margins.mass import MASS
 from kinematics.margins.parallel import DET_J_X
 from kinematics.margins.passive_joint import PASSIVE_JOINT
 from kinematics.margins.reach import REACH
@@ -23,6 +24,7 @@ STANDARD = (
     J_Q,
     DET_J_Q,
     DET_J_X,
+    MASS,
 )
 
 __all__ = ["CLEARANCE", "PASSIVE_JOINT", "STANDARD"]
