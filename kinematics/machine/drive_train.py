@@ -1,4 +1,4 @@
-"""The drive train between motor and actuator: gear, motor inertia, friction."""
+"""The drive train between motor and actuator: gear, motor inertia, friction, and how far the position may be off."""
 
 from __future__ import annotations
 
@@ -27,6 +27,10 @@ class DriveTrain:
         coulomb: [N m] or [N].
         viscous: [N m s/rad] or [N s/m].
         stiffness: of gear and servo loop, at the actuator [N m/rad] or [N/m]; inf if they do not give way.
+        encoder_resolution: one step of the encoder, at the actuator [rad or m]. The servo holds the position that the
+            encoder tells to one step, so the motor may be off by so much to either side.
+        backlash: how far the actuator moves freely while its motor stands, from one flank to the other [rad or m]. The
+            encoder is the motor's and is set to the middle, so the actuator may be off by half of it to either side.
 
     Raises:
         InvalidValue: a value is infinite, NaN or negative, or a gear ratio or stiffness is 0.
@@ -37,6 +41,8 @@ class DriveTrain:
     coulomb: PerActuator = 0.0
     viscous: PerActuator = 0.0
     stiffness: PerActuator = float("inf")
+    encoder_resolution: PerActuator = 0.0
+    backlash: PerActuator = 0.0
 
     def __post_init__(self) -> None:
         for f in fields(self):
@@ -62,6 +68,10 @@ class DriveTrain:
         """(..., m) actuator speeds [rad/s or m/s] -> Coulomb and viscous friction, (..., m) each [N m or N]."""
         coulomb, viscous = (self.of_actuators(name, speed.shape[-1]) for name in ("coulomb", "viscous"))
         return coulomb * np.sign(speed) * (np.abs(speed) > REST), viscous * speed
+
+    def position_errors(self, count: int) -> np.ndarray:
+        """(count,) how far each actuator may be off to either side [rad or m]: a step and half of the backlash."""
+        return self.of_actuators("encoder_resolution", count) + self.of_actuators("backlash", count) / 2
 
     def of_actuators(self, name: str, count: int) -> np.ndarray:
         """(count,) one field.

@@ -1,5 +1,6 @@
 """Margins, one file for each kind: numbers that must be good enough at every pose, and what proves their bounds."""
 
+from kinematics.margins.accuracy import ANGLE_ACCURACY, POSITION_ACCURACY
 from kinematics.margins.clearance import CLEARANCE
 from kinematics.margins.condition import INVERSE_CONDITION_NUMBER
 from kinematics.margins.force_capability import FORCE_CAPABILITY
@@ -25,6 +26,8 @@ STANDARD = (
     DET_J_Q,
     DET_J_X,
     MASS,
+    POSITION_ACCURACY,
+    ANGLE_ACCURACY,
 )
 
 __all__ = ["CLEARANCE", "PASSIVE_JOINT", "STANDARD"]
