@@ -38,7 +38,7 @@ from kinematics.evaluation import (
     run_through,
 )
 from kinematics.machine import UNIFORM, DriveTrain, FieldKind, GeometryRecord, InertiaRecord, JointRanges, kind_of
-from kinematics.margins import CLEARANCE, PASSIVE_JOINT, STANDARD
+from kinematics.margins import ANGLE_ACCURACY, CLEARANCE, PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
 from kinematics.model import (
@@ -65,6 +65,7 @@ from kinematics.robots.planar import Planar3PRR, Planar3RPR, Planar3RRR
 from kinematics.robots.redundant_3t1r import Redundant3T1R
 
 __all__ = [
+    "ANGLE_ACCURACY",
     "ARCHITECTURES",
     "CLEARANCE",
     "CORES",

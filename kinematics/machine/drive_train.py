@@ -83,3 +83,8 @@ class DriveTrain:
         if np.ndim(value) and np.shape(value) != (count,):
             raise InvalidField("DriveTrain", name, value, f"one number, or {count}: one for each actuator")
         return np.broadcast_to(np.asarray(value, dtype=float), (count,))
+
+
+# Assumptions of this project, for mechanisms whose drives are not known; both are fine for a servo of today.
+ROTARY = DriveTrain(encoder_resolution=1e-4)  # rad: 16 bits a turn of the actuator
+LINEAR = DriveTrain(encoder_resolution=1e-6)  # m: a linear scale, or a screw of 10 mm a turn with 13 bits

@@ -145,7 +145,7 @@ def _nonzero(columns: ca.SX) -> ca.SX:
 
 
 def _corners(columns: ca.SX) -> list[ca.SX]:
-    """Sums of the columns (n, k) with all signs but the first's: 2^(k - 1) vectors, the others being their negatives."""
+    """Sums of the columns (n, k) with all signs but the first's: 2^(k - 1) vectors, one of each opposite two."""
     sums = [columns[:, 0]]
     for k in range(1, columns.shape[1]):
         sums = [total + sign * columns[:, k] for total in sums for sign in (1, -1)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import Field, fields
+from dataclasses import Field, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,10 +26,10 @@ _JOINTS: dict[tuple[str, ...], Dimension] = {("m",): Dimension.LENGTH, ("rad",):
 
 
 def inertia_of(study: Study) -> InertiaRecord:
-    """The mechanism's masses; those that the study sets replace the mechanism's own."""
-    masses: dict[str, Any] = dict(study.inertia.masses)
-    drive_train = DriveTrain(**study.inertia.drive_train.model_dump(exclude_none=True))
-    return study.mechanism_class.Inertia(**masses, drive_train=drive_train)
+    """The mechanism's masses and drives; those that the study sets replace the mechanism's own."""
+    own, masses = study.mechanism_class.Inertia(), dict[str, Any](study.inertia.masses)
+    drive_train = replace(own.drive_train, **study.inertia.drive_train.model_dump(exclude_none=True))
+    return replace(own, **masses, drive_train=drive_train)
 
 
 def ranges_of(study: Study) -> JointRanges:
@@ -45,8 +45,12 @@ def hardware_tables(mechanism: type[Mechanism]) -> dict[str, Table]:
     joints = Key(
         f"finite low < high, one pair or {len(mechanism.joint_names)} pairs", joint_unit(mechanism), place=True
     )
+    own, unit = table_of(InertiaTable), joint_unit(mechanism)
+    error = Key(f"a number >= 0, or one a joint{'' if unit is not Dimension.NONE else ' (rad or m)'}", unit, place=True)
+    drives = own.keys["drive_train"]
+    assert isinstance(drives, Table)
     return {
-        "inertia": Table({**masses, **table_of(InertiaTable).keys}),
+        "inertia": Table(masses | {"drive_train": drives.updated({"encoder_resolution": error, "backlash": error})}),
         "ranges": Table(ranges | {"joints": joints}),
     }
 

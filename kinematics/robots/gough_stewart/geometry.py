@@ -7,14 +7,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar, Self
 
 import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.errors import InvalidField, InvalidGeometry, InvalidValue
-from kinematics.machine import TURN, GeometryRecord, InertiaRecord, Pair, Points, RodRanges, frame, length, numbers_of
+from kinematics.machine import (
+    LINEAR,
+    TURN,
+    DriveTrain,
+    GeometryRecord,
+    InertiaRecord,
+    Pair,
+    Points,
+    RodRanges,
+    frame,
+    length,
+    numbers_of,
+)
 from kinematics.robots.gough_stewart.architecture_singularity import why_singular
 
 _DEG = math.pi / 180.0
@@ -153,6 +165,7 @@ class GoughStewartInertia(InertiaRecord):
         platform_mass: in six equal particles at the B_i; the payload is a particle at the tool point.
     """
 
+    drive_train: DriveTrain = field(default=LINEAR, kw_only=True)
     dimensions: ClassVar[Mapping[str, str]] = {"screw_lead": "length_per_turn", "rod_length": "length"}
     screw_lead: float = 0.010
     drive: float = 1.2e-4

@@ -18,7 +18,7 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import TURN, Bodies, Member, Particle, Rotor, Tube, angle, bar, length, ratio
-from kinematics.margins import PASSIVE_JOINT, STANDARD
+from kinematics.margins import ANGLE_ACCURACY, PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import determinant, distinct, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, joined_to_home, polished
 from kinematics.robots.par4.forward import Halves, candidates
@@ -101,7 +101,7 @@ class Par4(RotaryLimbs):
     rotations = (3,)
     counts_turns = True  # of the bars, by the gear
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
-    margins = by_name(*STANDARD, PI_JOINT, PASSIVE_JOINT)
+    margins = by_name(*STANDARD, ANGLE_ACCURACY, PI_JOINT, PASSIVE_JOINT)
 
     @property
     def characteristic_length(self) -> float:

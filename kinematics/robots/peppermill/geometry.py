@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from kinematics.machine import GeometryRecord, InertiaRecord, Pair, RodRanges, length, screw_pitch
+from kinematics.machine import ROTARY, DriveTrain, GeometryRecord, InertiaRecord, Pair, RodRanges, length, screw_pitch
 
 # Share of the larger pitch. Rounding of a nut's height [m] changes theta by 2 pi / |p_1 - p_2| times as much [rad]. At
 # this difference of pitches theta is known to about 1e-8 rad; at 1e-11 only to 1e-3.
@@ -55,6 +55,7 @@ class PeppermillInertia(InertiaRecord):
             point at C.
     """
 
+    drive_train: DriveTrain = field(default=ROTARY, kw_only=True)
     motor: float = 3.0e-4
     carriage_mass: float = 1.5
     carriage: float = 1.0e-3

@@ -7,7 +7,7 @@ Pose [x, y, theta]. Given the joints, all three are the same problem: three plat
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import casadi as ca
@@ -16,8 +16,10 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import (
+    LINEAR,
     TURN,
     Bodies,
+    DriveTrain,
     GeometryRecord,
     InertiaRecord,
     Member,
@@ -28,7 +30,7 @@ from kinematics.machine import (
     platform,
     shared_joints,
 )
-from kinematics.margins import STANDARD
+from kinematics.margins import ANGLE_ACCURACY, STANDARD
 from kinematics.mathematics import distinct
 from kinematics.model import Build, Mechanism, Model, by_name, joined_to_home
 from kinematics.robots.planar.forward import placements, rods_and_determinant
@@ -92,6 +94,7 @@ class PlanarInertia(InertiaRecord):
         platform_mass: three equal particles at the B_i; the payload is a particle at the tool point.
     """
 
+    drive_train: DriveTrain = field(default=LINEAR, kw_only=True)
     drive: float = 1.0
     link_mass: float = 0.3
     platform_mass: float = 1.2
@@ -105,7 +108,7 @@ class Planar(Mechanism):
     pose_names = ("x", "y", "theta")
     joint_names = ("q1", "q2", "q3")
     rotations = (2,)
-    margins = by_name(*STANDARD)
+    margins = by_name(*STANDARD, ANGLE_ACCURACY)
 
     @property
     def characteristic_length(self) -> float:

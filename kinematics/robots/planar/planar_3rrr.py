@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.machine import Bodies, GeometryRecord, JointRanges, Member, Pair, angle, length, shared_joints
+from kinematics.machine import (
+    ROTARY,
+    Bodies,
+    DriveTrain,
+    GeometryRecord,
+    JointRanges,
+    Member,
+    Pair,
+    angle,
+    length,
+    shared_joints,
+)
 from kinematics.model import FviBounds
 from kinematics.robots.planar.planar import AZIMUTHS, Planar, PlanarGeometry, PlanarInertia
 from kinematics.robots.shared import Limbs, RotaryLimbs, arms_and_rods, radial_directions
@@ -37,6 +48,7 @@ class Planar3RRRInertia(PlanarInertia):
             about the joint over m c^2.
     """
 
+    drive_train: DriveTrain = field(default=ROTARY, kw_only=True)
     drive: float = 0.005
     arm_mass: float = 0.4
     arm_centre: float = 0.5

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from kinematics.machine import Bodies, InertiaRecord, Particle, Rod, Rotor
+from kinematics.machine import LINEAR, Bodies, DriveTrain, InertiaRecord, Particle, Rod, Rotor
 from kinematics.robots.redundant_3t1r.geometry import LIMBS, PARALLELOGRAMS
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ class Redundant3T1RInertia(InertiaRecord):
         platform_inertia: of the platform about e_z through P.
     """
 
+    drive_train: DriveTrain = field(default=LINEAR, kw_only=True)
     slide_mass: float = 5.0
     rod_mass: float = 0.9
     platform_mass: float = 3.0

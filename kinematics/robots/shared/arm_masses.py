@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import casadi as ca
 
-from kinematics.machine import Bodies, InertiaRecord, Particle, Rod, Rotor
+from kinematics.machine import ROTARY, Bodies, DriveTrain, InertiaRecord, Particle, Rod, Rotor
 from kinematics.robots.shared.rotary_limbs import RotaryLimbs
 
 
@@ -23,6 +23,7 @@ class ArmInertia(InertiaRecord):
         rod_mass: mass of the one or two rods between an arm and the platform.
     """
 
+    drive_train: DriveTrain = field(default=ROTARY, kw_only=True)
     drive: float = 0.045
     arm_mass: float = 0.9
     arm_centre: float = 0.40
