@@ -36,21 +36,23 @@ class ErrorModel(NamedTuple):
 
     @classmethod
     def of(cls, robot: Mechanism) -> ErrorModel:
-        """That of a robot, its rows without divisors where joints and freedoms are equally many."""
-        model, count = robot.model(), len(robot.joint_names)
-        steps = ca.DM(robot.inertia.drive_train.position_errors(count))
+        """That of a robot. The errors of a limb's actuator and of its rod are one, unless drives couple the joints."""
+        model, steps = robot.model(), ca.DM(robot.inertia.drive_train.position_errors(len(robot.joint_names)))
         j_q, play = model.j_q_at_pose, robot.structure.joint_play
-        rods = play * _rods(robot) if play else ca.SX.zeros(count)
-        if not model.drives.is_eye():
-            to_joints = _inverse(model.drives)
-            errors = ca.horzcat(ca.diag(j_q) @ to_joints @ ca.diag(steps), _nonzero(ca.diag(rods)))
-        else:  # the errors of a limb's actuator and of its rod act along the same column
-            errors = ca.diag((ca.fabs(j_q) if play else j_q) * steps + rods)
-        if count == len(robot.pose_names):
+        rods = play * _rods(robot) if play else ca.SX.zeros(j_q.numel())
+        coupled = not model.drives.is_eye()
+        if j_q.numel() == len(robot.pose_names):
             matrix, factors = robot.cleared_j_x()
+            if coupled:
+                errors = ca.horzcat(ca.diag(j_q) @ _inverse(model.drives) @ ca.diag(steps), ca.diag(rods))
+            else:
+                errors = ca.diag((ca.fabs(j_q) if play else j_q) * steps + rods)
             return cls(matrix, _nonzero(ca.diag(factors) @ errors))
-        actuators = model.drives @ ca.diag(1 / j_q)
-        return cls(model.actuator_jacobian, _nonzero(actuators @ errors))
+        if coupled:
+            errors = ca.horzcat(ca.diag(steps), model.drives @ ca.diag(rods / j_q))
+        else:
+            errors = ca.diag(steps + (rods / ca.fabs(j_q) if play else 0))
+        return cls(model.actuator_jacobian, _nonzero(errors))
 
     def columns(self, scaling: ca.SX | None = None) -> tuple[ca.SX, ca.SX]:
         """G (n, k) times the second result, a determinant; of A S in place of A with a scaling S (n, n)."""
@@ -69,6 +71,11 @@ class _Accuracy(Margin):
 
     sense = -1
     angles: ClassVar[bool]
+
+    def mirrored(self, robot: Mechanism) -> bool:
+        """The Jacobians decide it if all actuators have the same error."""
+        errors = robot.inertia.drive_train.position_errors(len(robot.joint_names))
+        return bool((errors == errors[0]).all())
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
         """One for each pair of opposite corners; one for a single coordinate."""

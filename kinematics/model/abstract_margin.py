@@ -88,7 +88,7 @@ class Margin(ABC):
         unit: the unit of its numbers; empty if there is none. `rad or m` depends on the joint.
         words: a description for people.
         holds_on_paths: whether it must be above 0 at every pose of a path.
-        of_jacobians: whether it depends only on J_x and |J_q|, so that a mirror that keeps these keeps it.
+        of_jacobians: whether it depends only on J_x and |J_q|, for any robot.
         beyond_reach: whether it has a value even where a limb cannot reach.
         singularity: the kind of singularity where it is 0; empty if it shows none.
     """
@@ -110,6 +110,10 @@ class Margin(ABC):
         `atan2`, `fabs`, `fmin` and `fmax`. Write a modulus or the worst of several numbers (their minimum, or where
         smaller is better their maximum) as the outermost operation: it is then split.
         """
+
+    def mirrored(self, robot: Mechanism) -> bool:  # noqa: ARG002
+        """Whether a mirror that keeps J_x and |J_q|, in another order of the limbs, keeps the margin of this robot."""
+        return self.of_jacobians
 
     def limbs(self, robot: Mechanism) -> list[int] | None:  # noqa: ARG002
         """(k,) the limb of each component, counted from 1; None if components do not belong to limbs."""
