@@ -53,10 +53,18 @@ from kinematics.machine import (
     Structure,
     kind_of,
 )
-from kinematics.margins import CLEARANCE, INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
+from kinematics.margins import (
+    ANGLE_ACCURACY,
+    CLEARANCE,
+    INTERNAL_STIFFNESS,
+    PASSIVE_JOINT,
+    ROTATIONAL_STIFFNESS,
+    STANDARD,
+)
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
 from kinematics.model import (
+    Bound,
     ClaimSymbols,
     FviBounds,
     Margin,
@@ -79,6 +87,7 @@ from kinematics.robots.planar import Planar3PRR, Planar3RPR, Planar3RRR
 from kinematics.robots.redundant_3t1r import Redundant3T1R
 
 __all__ = [
+    "ANGLE_ACCURACY",
     "ARCHITECTURES",
     "CLEARANCE",
     "CORES",
@@ -93,6 +102,7 @@ __all__ = [
     "Architecture",
     "Array",
     "BlockProgram",
+    "Bound",
     "BoxProgram",
     "ClaimSymbols",
     "Delta",

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from kinematics import LinkwrightError
+from kinematics import Bound, LinkwrightError
 
 KeyPath = tuple[str | int, ...]  # ("requirement", 0, "margin"): table, row, key
 
@@ -58,7 +58,7 @@ class Failed:
     """
 
     margin: str
-    at_least: float
+    bound: Bound
     found: float
     pose: tuple[float, ...]
     place: str = ""
@@ -66,8 +66,9 @@ class Failed:
     def __str__(self) -> str:
         where = f" at pose {_pose(self.pose)}" if self.pose else ""
         found = f"{self.found:.6g}" if math.isfinite(self.found) else "no value, as a limb cannot reach,"
+        words = self.bound.word.replace("_", " ")
         at = f"{self.place}: " if self.place else ""
-        return f"{at}{self.margin}: found {found}{where}; expected at least {self.at_least:g}"
+        return f"{at}{self.margin}: found {found}{where}; expected {words} {self.bound.value:g}"
 
 
 class RequirementFailed(LinkwrightError):

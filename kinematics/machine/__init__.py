@@ -2,7 +2,7 @@
 
 from kinematics.machine.beams import Beam, Section
 from kinematics.machine.bodies import UNIFORM, Bodies, InertiaRecord, Particle, Rod, Rotor
-from kinematics.machine.drive_train import REST, DriveTrain
+from kinematics.machine.drive_train import LINEAR, REST, ROTARY, DriveTrain
 from kinematics.machine.geometry_fields import TURN, FieldKind, Points, angle, frame, length, ratio, screw_pitch
 from kinematics.machine.geometry_record import GeometryRecord, kind_of, numbers_of
 from kinematics.machine.joint_ranges import JointRanges, Pair, PassiveJoint, RodRanges
@@ -34,9 +34,11 @@ from kinematics.machine.structure import Structure
 
 __all__ = [
     "AXES",
+    "LINEAR",
     "MATERIALS",
     "ORIGIN",
     "REST",
+    "ROTARY",
     "TURN",
     "UNIFORM",
     "Beam",

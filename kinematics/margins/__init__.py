@@ -1,10 +1,12 @@
-"""Margins, one file for each kind: numbers that must be large enough at every pose, and what proves their bounds."""
+"""Margins, one file for each kind: numbers that must be good enough at every pose, and what proves their bounds."""
 
+from kinematics.margins.accuracy import ANGLE_ACCURACY, POSITION_ACCURACY
 from kinematics.margins.clearance import CLEARANCE
 from kinematics.margins.condition import INVERSE_CONDITION_NUMBER
 from kinematics.margins.force_capability import FORCE_CAPABILITY
 from kinematics.margins.isotropic import F_W, FVI, V_W
 from kinematics.margins.joint_travel import JOINT_TRAVEL
+from kinematics.margins.mass import MASS
 from kinematics.margins.natural_frequency import NATURAL_FREQUENCY
 from kinematics.margins.parallel import DET_J_X
 from kinematics.margins.passive_joint import PASSIVE_JOINT
@@ -27,6 +29,8 @@ STANDARD = (
     DET_J_X,
     STIFFNESS,
     NATURAL_FREQUENCY,
+    MASS,
+    POSITION_ACCURACY,
 )
 
-__all__ = ["CLEARANCE", "INTERNAL_STIFFNESS", "PASSIVE_JOINT", "ROTATIONAL_STIFFNESS", "STANDARD"]
+__all__ = ["ANGLE_ACCURACY", "CLEARANCE", "INTERNAL_STIFFNESS", "PASSIVE_JOINT", "ROTATIONAL_STIFFNESS", "STANDARD"]

@@ -6,7 +6,7 @@ Each of these margins holds some freedoms of the platform and leaves the others 
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -50,6 +50,8 @@ class Pencil(NamedTuple):
 
 class WeakestDirection(Margin):
     """The smallest eigenvalue of a stiffness; infinite where nothing gives way."""
+
+    records: ClassVar[tuple[str, ...]] = ("inertia", "structure")
 
     @abstractmethod
     def pencil(self, robot: Mechanism) -> Pencil | None:

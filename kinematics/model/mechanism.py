@@ -236,7 +236,7 @@ class Mechanism(Definition):
     def margin(
         self, name: str, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None
     ) -> Array:
-        """(...,) a named margin: the smallest of its components at each pose; a larger margin is better.
+        """(...,) a named margin: the worst of its components at each pose. Its `sense` says whether larger is better.
 
         Every mechanism has the margins `kinematics.STANDARD`; `margins` holds these and the mechanism's other ones. NaN
         where the pose is out of reach, except for reach itself.
@@ -268,7 +268,7 @@ class Mechanism(Definition):
         return self.program(expressions.within_reach, expressions.margin, name, measure)
 
     def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
-        """A margin's components in the model's symbols `pose` and `geometry`. Each must be at least the bound.
+        """A margin's components in the model's symbols `pose` and `geometry`. Each must keep the bound.
 
         Raises:
             InvalidValue: the mechanism has no such margin.

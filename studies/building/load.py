@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from kinematics import InvalidGeometry
-from studies.building.against_mechanism import at_odds, study_table
+from studies.building.against_mechanism import at_odds, study_table, wrong_words
 from studies.building.mechanisms import MechanismRefused, NamedMechanism, mechanism_named
 from studies.building.objects import path_of
 from studies.errors import Fault, KeyPath, StudyError, spelled
@@ -37,6 +37,10 @@ def load_study(file: TomlFile, allow_code: bool = False) -> Study:
         table = study_table(mechanism, raw)
         data = conversion.to_si(raw, table)
         wrong = set(at_odds(data, mechanism))
+        for path, expected in wrong_words(data, mechanism):
+            key = conversion.spelling[path]
+            conversion.findings.append(Finding(key, f"{key[-1]} = {spelled(file.value(key))}", expected))
+            wrong.discard((*path[:-1], expected.partition(",")[0]))
     else:
         table = table_of(Study)
         data = conversion.to_si(_without_the_mechanism_s(raw), table)

@@ -107,7 +107,7 @@ def problem_of(study: Study) -> Problem:
         robot=robot,
         objective=OBJECTIVE,
         variables=tuple(variables),
-        requirements=tuple(Requirement(r.margin, r.at_least) for r in study.requirement),
+        requirements=tuple(Requirement(r.margin, r.at_least, r.at_most) for r in study.requirement),
         sums=tuple(sums),
         fvi_bounds=fvi_bounds_of(study),
         characteristic_length=own_length or robot.characteristic_length,

@@ -91,6 +91,10 @@ def certify(
         float | None,
         typer.Option("--at-least", help="Prove this bound of --margin (default: the required bound, else the best)."),
     ] = None,
+    at_most: Annotated[
+        float | None,
+        typer.Option("--at-most", help="The same for a margin that is better smaller, such as position_accuracy."),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option("--out", help="Folder for the certificates (default: none are written).")
     ] = None,
@@ -113,7 +117,7 @@ def certify(
 
     file, asked, _ = load(study, allow_code, seconds=seconds)
     question = question_of(asked, robot_for(file, asked, prototype))
-    claims = question.only(margin, at_least)
+    claims = question.only(margin, at_least, at_most)
     folder = output_folder(out, [claim_file(claim.margin) for claim in claims], force)
     with console.progress() as tell:
         proofs = prove_claims(question, claims, {}, {}, tell)

@@ -58,7 +58,7 @@ def proof_data(proof: Proof) -> dict[str, Any]:
     found = proof.certificate
     return {
         "margin": found.margin,
-        "at_least": found.at_least,
+        found.bound.word: found.bound.value,
         "status": found.status,
         "boxes": found.boxes,
         "seconds": proof.seconds,

@@ -113,7 +113,7 @@ def pictures_of(outcome: Outcome) -> Pictures:
     if outcome.prototype is not None:
         robots = {outcome.before: outcome.problem.robot, **robots}
     pictures = [("Mechanism in its workspace (green edges)", plots.mechanism_picture(robots, outcome.region))]
-    bounds = {r.margin: r.at_least for r in outcome.problem.requirements} | {outcome.problem.objective: 1.0}
+    bounds = {r.margin: r.bound.value for r in outcome.problem.requirements} | {outcome.problem.objective: 1.0}
     mapped = _MAPPED if plots.can_be_mapped(outcome.region, outcome.robot.pose_names) else ()
     for margin in (m for m in mapped if m in outcome.robot.margins):
         sections = {

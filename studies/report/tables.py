@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from studies.stages import Outcome, Proof, shown_pose
 
-PROOFS = ("claim at every pose", "answer", "boxes", "time [s]", "lowest sampled", "sampled - bound", "at pose")
+PROOFS = ("claim at every pose", "answer", "boxes", "time [s]", "worst sampled", "room to the bound", "at pose")
 
 
 def margin_columns(outcome: Outcome) -> tuple[str, ...]:
@@ -16,9 +16,10 @@ def margin_columns(outcome: Outcome) -> tuple[str, ...]:
 
 def margin_rows(outcome: Outcome) -> list[tuple[str, ...]]:
     """The worst value of each margin, in the columns `margin_columns`."""
-    wanted = {r.margin: f">= {r.at_least:g}" for r in outcome.problem.requirements}
+    wanted = {r.margin: str(r.bound) for r in outcome.problem.requirements}
     if outcome.study.optimise:
-        wanted.setdefault(outcome.problem.objective, "as large as possible")
+        size = "large" if outcome.problem.good(1.0) > 0.0 else "small"
+        wanted.setdefault(outcome.problem.objective, f"as {size} as possible")
     return [
         (
             margin,

@@ -1,6 +1,6 @@
 """The stages of a study; each takes data and returns data."""
 
-from studies.stages.claim_rows import ROUNDING, Row, agrees, at_least, same, same_digest, shown_pose
+from studies.stages.claim_rows import ROUNDING, Row, agrees, keeps, same, same_digest, shown_pose
 from studies.stages.cycle_stage import Timing, require_on_cycle, time_cycle
 from studies.stages.map_options import MapRequest, angles_of, map_request
 from studies.stages.map_stage import MapOutcome, run_map, unit_of
@@ -23,10 +23,10 @@ __all__ = [
     "Timing",
     "agrees",
     "angles_of",
-    "at_least",
     "certified",
     "claims_of",
     "designed",
+    "keeps",
     "map_request",
     "prove_claims",
     "question_of",

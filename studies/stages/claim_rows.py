@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
+from kinematics import Bound
+
 AGREE = 1e-6  # relative: how much another machine's rounding may change a figure
 ROUNDING = 1e-9  # m or rad: how much rounding may change a pose in the file, or a sum
 
@@ -47,10 +49,10 @@ def agrees(what: str, claimed: object, found: float) -> Row:
     return Row(what, f"{claimed:.9g}", f"{found:.9g}", AGREE * max(abs(claimed), ROUNDING) - off)
 
 
-def at_least(what: str, bound: float, found: float, pose: Any) -> Row:
-    """Expect a value that is not below a bound; `pose` is where it was found, or None."""
+def keeps(what: str, bound: Bound, found: float, pose: Any) -> Row:
+    """Expect a value that keeps a bound; `pose` is where it was found, or None."""
     where = "" if pose is None else shown_pose(pose)
-    return Row(what, f">= {bound:g}", f"{found:.9g}", found - bound, where)
+    return Row(what, str(bound), f"{found:.9g}", bound.room(found), where)
 
 
 def shown_pose(pose: Any) -> str:

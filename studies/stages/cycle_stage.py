@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from design import Problem, Region
-from kinematics import InvalidField, LinkwrightError, Mechanism, to_actuators
+from kinematics import Bound, InvalidField, LinkwrightError, Mechanism, to_actuators
 from studies.building import approach_limits, home_of, leaving, limits_of, path_of, problem_of, region_of, timing_of
 from studies.errors import ApproachFailed, Failed, RequirementFailed
 from studies.study_file import Study
@@ -66,12 +66,13 @@ class Timing:
 
 
 def margins_on(problem: Problem, robot: Mechanism, ways: Sequence[Way], grid: int) -> dict[str, float]:
-    """The worst value of each requirement's margin on the ways of a cycle; NaN counts as -inf."""
+    """The worst value of each requirement's margin on the ways of a cycle; NaN counts as infinitely bad."""
     poses = np.concatenate([way.evaluate(np.linspace(0.0, way.length, grid + 1), 0)[0] for way in ways])
     found = {}
     for requirement in problem.requirements:
         values = robot.margin(requirement.margin, poses, problem.fvi_bounds, problem.characteristic_length)
-        found[requirement.margin] = float(np.where(np.isnan(values), -np.inf, values).min())
+        sense = requirement.bound.sense
+        found[requirement.margin] = sense * float(np.where(np.isnan(values), -np.inf, sense * values).min())
     return found
 
 
@@ -85,9 +86,9 @@ def require_on_cycle(study: Study, cycle: Cycle) -> None:
     problem = problem_of(study)
     found = margins_on(problem, cycle.robot, cycle.ways, study.trajectory.grid)
     failed = [
-        Failed(f"{r.margin} on the cycle", r.at_least, found[r.margin], ())
+        Failed(f"{r.margin} on the cycle", r.bound, found[r.margin], ())
         for r in problem.requirements
-        if not found[r.margin] >= r.at_least
+        if not r.bound.room(found[r.margin]) >= 0.0
     ]
     if failed:
         raise RequirementFailed(failed)
@@ -163,4 +164,4 @@ def _require_inside(region: Region, cycle: Cycle) -> None:
     out = [found for way in cycle.ways if (found := leaving(region, way, cycle.robot.pose_names))]
     if out:
         room = "distance inside the region's boundary on the cycle [m or rad]"
-        raise RequirementFailed([Failed(room, 0.0, found.room, tuple(found.pose.tolist())) for found in out])
+        raise RequirementFailed([Failed(room, Bound(0.0), found.room, tuple(found.pose.tolist())) for found in out])

@@ -11,7 +11,9 @@ from typing import Any
 import numpy as np
 
 from design import Box, CertifiedRegion, Cylinder, LevelSet, Region, certified_cells, certified_cylinder, level_set
-from studies.stages.map_options import InvalidOption, MapRequest, angles_of
+from kinematics import Bound
+from studies.stages.bound_option import InvalidOption
+from studies.stages.map_options import MapRequest, angles_of
 from studies.stages.timed_stage import Progress, stage
 
 
@@ -78,7 +80,7 @@ class MapOutcome:
     def figures(self) -> dict[str, Any]:
         """The numbers, as plain data; `moved` has the change of each in the last refinement."""
         now, before = self.found.figures, self.found.coarser
-        value, pose = self.found.map.lowest
+        value, pose = self.found.map.worst
         data: dict[str, Any] = {
             "area": now.area,
             "mean": now.mean,
@@ -139,13 +141,14 @@ def _proof(request: MapRequest, seconds: float) -> Callable[[], CertifiedRegion]
     """The search for the certified region. The options are checked here, before anything runs."""
     r = request
     if r.bound is None:
-        raise InvalidOption("--certified", f"no bound of {r.index.name}", "--at-least C")
+        word = r.robot.margins[r.index.name].word.replace("_", "-")
+        raise InvalidOption("--certified", f"no bound of {r.index.name}", f"--{word} C")
     region, bound, name = _fixed(r), r.bound, r.index.name
     measured: dict[str, Any] = {"bounds": r.fvi_bounds, "characteristic_length": r.characteristic_length}
-    measured["seconds"] = seconds
+    measured |= {"seconds": seconds, Bound(bound, r.index.sense).word: bound}
     if isinstance(region, Cylinder):
-        return lambda: certified_cylinder(r.robot, region, name, at_least=bound, **measured)
-    return lambda: certified_cells(r.robot, region, r.section.axes, name, at_least=bound, **measured)
+        return lambda: certified_cylinder(r.robot, region, name, **measured)
+    return lambda: certified_cells(r.robot, region, r.section.axes, name, **measured)
 
 
 def _fixed(request: MapRequest) -> Region:

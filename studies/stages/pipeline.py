@@ -81,14 +81,15 @@ class Outcome:
         failed = []
         for requirement in self.problem.requirements:
             worst = self.worst[requirement.margin]
-            if not worst.value >= requirement.at_least:
-                failed.append(Failed(requirement.margin, requirement.at_least, worst.value, tuple(worst.pose.tolist())))
-            on_path = self.on_cycle.get(requirement.margin, math.inf)
-            if not on_path >= requirement.at_least:
-                failed.append(Failed(f"{requirement.margin} on the cycle", requirement.at_least, on_path, ()))
+            bound = requirement.bound
+            if not bound.room(worst.value) >= 0.0:
+                failed.append(Failed(requirement.margin, bound, worst.value, tuple(worst.pose.tolist())))
+            on_path = self.on_cycle.get(requirement.margin, bound.value)
+            if not bound.room(on_path) >= 0.0:
+                failed.append(Failed(f"{requirement.margin} on the cycle", bound, on_path, ()))
         for proof in self.proofs:
             if (pose := proof.certificate.counterexample) is not None:
-                name, bound = proof.certificate.margin, proof.certificate.at_least
+                name, bound = proof.certificate.margin, proof.certificate.bound
                 failed.append(Failed(name, bound, proof.sampled, tuple(pose.tolist())))
         if failed:
             raise RequirementFailed(failed)

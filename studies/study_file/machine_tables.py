@@ -29,6 +29,10 @@ class DriveTrainTable(StudyTable):
     """The friction at the joint for each unit of speed. The law `toppra` does not allow it."""
     stiffness: Annotated[Numbers | None, Key("a number > 0, or one a joint (N m/rad, or N/m)")] = None
     """How hard gear and servo loop resist at the joint."""
+    encoder_resolution: Annotated[Numbers | None, Key("a number >= 0, or one a joint (rad or m)")] = None
+    """One step of the encoder, at the actuator. The motor may be off by so much to either side."""
+    backlash: Annotated[Numbers | None, Key("a number >= 0, or one a joint (rad or m)")] = None
+    """How far the actuator moves freely, from one flank to the other."""
 
 
 class MaterialTable(StudyTable):

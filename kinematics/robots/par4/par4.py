@@ -18,7 +18,7 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import TURN, Bodies, Member, Particle, Rotor, Tube, angle, bar, length, member_mass, ratio
-from kinematics.margins import INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
+from kinematics.margins import ANGLE_ACCURACY, INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.mathematics import determinant, distinct, volume, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, joined_to_home, polished
 from kinematics.robots.par4.forward import Halves, candidates
@@ -108,7 +108,13 @@ class Par4(PairedArms):
     counts_turns = True  # of the bars, by the gear
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
     margins = by_name(
-        *STANDARD, ROTATIONAL_STIFFNESS, PI_JOINT, INTERNAL_DETERMINANT, INTERNAL_STIFFNESS, PASSIVE_JOINT
+        *STANDARD,
+        ANGLE_ACCURACY,
+        ROTATIONAL_STIFFNESS,
+        PI_JOINT,
+        INTERNAL_DETERMINANT,
+        INTERNAL_STIFFNESS,
+        PASSIVE_JOINT,
     )
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "omega_z", "theta")
     row_combinations = means_and_differences(4)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
-from kinematics.machine import DriveTrain, GeometryRecord, InertiaRecord, Pair, RodRanges, length, screw_pitch
+from kinematics.machine import ROTARY, DriveTrain, GeometryRecord, InertiaRecord, Pair, RodRanges, length, screw_pitch
 
 # Share of the larger pitch. Rounding of a nut's height [m] changes theta by 2 pi / |p_1 - p_2| times as much [rad]. At
 # this difference of pitches theta is known to about 1e-8 rad; at 1e-11 only to 1e-3.
@@ -72,7 +72,7 @@ class PeppermillInertia(InertiaRecord):
     nut_mass: float = 0.2
     platform_mass: float = 0.8
     tool: float = 6.0e-4
-    drive_train: DriveTrain = field(default=DriveTrain(stiffness=2e3), kw_only=True)
+    drive_train: DriveTrain = field(default=replace(ROTARY, stiffness=2e3), kw_only=True)
 
 
 @dataclass(frozen=True)

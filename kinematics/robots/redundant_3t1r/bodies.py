@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from kinematics.machine import Bodies, DriveTrain, InertiaRecord, Particle, Rod, Rotor, mass_points, rod_mass
+from kinematics.machine import LINEAR, Bodies, DriveTrain, InertiaRecord, Particle, Rod, Rotor, mass_points, rod_mass
 from kinematics.robots.redundant_3t1r.geometry import LIMBS, PARALLELOGRAMS
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class Redundant3T1RInertia(InertiaRecord):
     fittings_inertia: float = 0.012
     platform_mass: float | None = None
     platform_inertia: float | None = None
-    drive_train: DriveTrain = field(default=DriveTrain(stiffness=1e7), kw_only=True)
+    drive_train: DriveTrain = field(default=replace(LINEAR, stiffness=1e7), kw_only=True)
 
 
 def bodies(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:

@@ -3,12 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
 import casadi as ca
 
-from kinematics.machine import Bodies, DriveTrain, InertiaRecord, Member, Particle, Rod, Rotor, Tube, arm_mass, rod_mass
+from kinematics.machine import (
+    ROTARY,
+    Bodies,
+    DriveTrain,
+    InertiaRecord,
+    Member,
+    Particle,
+    Rod,
+    Rotor,
+    Tube,
+    arm_mass,
+    rod_mass,
+)
 from kinematics.robots.shared.rotary_limbs import RotaryLimbs
 
 
@@ -35,7 +47,7 @@ class ArmInertia(InertiaRecord):
     arm_centre: float | None = None
     arm_factor: float | None = None
     rod_mass: float | None = None
-    drive_train: DriveTrain = field(default=DriveTrain(stiffness=1e5), kw_only=True)
+    drive_train: DriveTrain = field(default=replace(ROTARY, stiffness=1e5), kw_only=True)
 
 
 def arms_and_rods(

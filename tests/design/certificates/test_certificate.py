@@ -204,9 +204,9 @@ def test_the_best_bound_is_within_its_tolerance_of_the_sampled_worst() -> None:
     found = best_bound(Heli4(), CYLINDER, "internal_determinant", 1e-3)
     assert found is not None
     assert found.certificate.status == "proved"
-    assert 0.0 <= found.sampled - found.certificate.at_least <= 1e-3 * (1 + 1e-9)
+    assert 0.0 <= found.sampled - found.certificate.bound.value <= 1e-3 * (1 + 1e-9)
     independent = worst_poses(Heli4(), CYLINDER, "internal_determinant", about=50_000).value
-    assert found.certificate.at_least <= independent <= found.sampled + 1e-9
+    assert found.certificate.bound.value <= independent <= found.sampled + 1e-9
 
 
 def test_a_best_bound_beyond_the_allowance_is_the_closest_that_is_not() -> None:
@@ -214,7 +214,7 @@ def test_a_best_bound_beyond_the_allowance_is_the_closest_that_is_not() -> None:
     tolerance, most_boxes = 2e-3, 144_000
     found = best_bound(Heli4(), CYLINDER, "J_q", tolerance, most_boxes=most_boxes)
     assert found is not None
-    doublings = math.log2((found.sampled - found.certificate.at_least) / tolerance)
+    doublings = math.log2((found.sampled - found.certificate.bound.value) / tolerance)
     assert doublings == pytest.approx(round(doublings), abs=1e-6)
     assert round(doublings) >= 1
     nearer = found.sampled - tolerance * 2.0 ** (round(doublings) - 1)
