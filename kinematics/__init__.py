@@ -6,9 +6,11 @@ from kinematics.arguments import finite, positive, whole
 from kinematics.arrays import Array, Value, checked
 from kinematics.coordinates import LENGTHS, is_length
 from kinematics.dynamics import (
+    FrameReaction,
     JointMotion,
     actuator_motion,
     derivatives_along,
+    frame_reaction,
     friction,
     from_actuators,
     inverse_dynamics,
@@ -80,6 +82,7 @@ __all__ = [
     "Delta",
     "DriveTrain",
     "FieldKind",
+    "FrameReaction",
     "FviBounds",
     "GeometryRecord",
     "GoughStewart",
@@ -122,6 +125,7 @@ __all__ = [
     "enclose",
     "evaluate",
     "finite",
+    "frame_reaction",
     "friction",
     "from_actuators",
     "inverse_dynamics",

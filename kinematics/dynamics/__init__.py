@@ -10,12 +10,15 @@ from kinematics.dynamics.drive_torque import (
     require_payload,
     torques,
 )
+from kinematics.dynamics.frame_reaction import FrameReaction, frame_reaction
 
 __all__ = [
     "GRAVITY",
+    "FrameReaction",
     "JointMotion",
     "actuator_motion",
     "derivatives_along",
+    "frame_reaction",
     "friction",
     "from_actuators",
     "inverse_dynamics",

@@ -17,7 +17,7 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
-from kinematics.machine import TURN, Bodies, Member, Particle, Rotor, Tube, angle, bar, length, ratio
+from kinematics.machine import AXES, TURN, Bodies, Member, Particle, Rotor, Tube, angle, bar, length, ratio
 from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import determinant, distinct, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, joined_to_home, polished
@@ -153,7 +153,7 @@ class Par4(RotaryLimbs):
         for link, mass, side in zip(halves, i.half_masses, (-1, 1), strict=True):
             bodies.particles.append(Particle(link, mass, pose[:3] + side * half))
         bodies.particles.append(Particle("bars", i.bars_mass + payload, pose[:3]))
-        bodies.rotors.extend([Rotor(i.bars_inertia, psi), Rotor(i.tool, pose[3])])
+        bodies.rotors.extend([Rotor(i.bars_inertia, psi, AXES[2]), Rotor(i.tool, pose[3], AXES[2])])
         return bodies
 
     @classmethod

@@ -20,6 +20,7 @@ from kinematics.arrays import Array
 from kinematics.dynamics import from_actuators, to_actuators
 from kinematics.evaluation import evaluate
 from kinematics.machine import (
+    AXES,
     TURN,
     Bodies,
     Member,
@@ -231,10 +232,10 @@ class Peppermill(Mechanism):
                     Particle(nut, i.nut_mass, nuts[:, limb]),
                 ]
             )
-            bodies.rotors.append(Rotor(i.carriage + own, joints[2 + limb]))
+            bodies.rotors.append(Rotor(i.carriage + own, joints[2 + limb], AXES[limb]))
             bodies.rods.append(Rod(i.distal_mass, (nut, proximal), nuts[:, limb], elbows[:, limb]))
         bodies.particles.append(Particle("platform", i.platform_mass + payload, pose[:3]))
-        bodies.rotors.append(Rotor(i.tool, pose[3]))
+        bodies.rotors.append(Rotor(i.tool, pose[3], AXES[2]))
         return bodies
 
     @classmethod

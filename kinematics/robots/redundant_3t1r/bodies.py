@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from kinematics.machine import Bodies, InertiaRecord, Particle, Rod, Rotor
+from kinematics.machine import AXES, Bodies, InertiaRecord, Particle, Rod, Rotor
 from kinematics.robots.redundant_3t1r.geometry import LIMBS, PARALLELOGRAMS
 
 if TYPE_CHECKING:
@@ -41,5 +41,5 @@ def bodies(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace,
         found.particles.append(Particle(slide, i.slide_mass, rails[:, limb]))
         found.rods.append(Rod(rods, (slide, "platform"), rails[:, limb], platform[:, limb]))
     found.particles.append(Particle("platform", i.platform_mass + payload, pose[:3]))
-    found.rotors.append(Rotor(i.platform_inertia, pose[3]))
+    found.rotors.append(Rotor(i.platform_inertia, pose[3], AXES[2]))
     return found

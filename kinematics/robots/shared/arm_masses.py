@@ -37,12 +37,12 @@ def arms_and_rods(
     i, limbs = robot.inertia, robot.limbs(g)
     bodies = Bodies(i.rod_middle)
     swing, elbows, ends = limbs.swing(joints), limbs.elbows(joints), robot.platform_points(pose, g)
-    arms = ca.repmat(limbs.arm, joints.numel() // limbs.arm.numel(), 1)
+    arms, axes = ca.repmat(limbs.arm, joints.numel() // limbs.arm.numel(), 1), limbs.axes()
     for limb in range(joints.numel()):
         centre = i.arm_centre * arms[limb]
         arm = f"arm {limb + 1}"
         bodies.particles.append(Particle(arm, i.arm_mass, limbs.actuators[:, limb] + centre * swing[:, limb]))
         own = (i.arm_factor - 1) * i.arm_mass * centre**2  # beyond the particle at the centre of mass
-        bodies.rotors.append(Rotor(i.drive + own, joints[limb]))
+        bodies.rotors.append(Rotor(i.drive + own, joints[limb], axes[:, limb]))
         bodies.rods.append(Rod(rod_mass, (platforms[limb], arm), ends[:, limb], elbows[:, limb]))
     return bodies
