@@ -8,7 +8,17 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from trajectory.cycles import Cycle, Piece, Repaired, repair, there_and_back
+from trajectory.cycles import (
+    FRAME_UNITS,
+    Cycle,
+    FramePeak,
+    Piece,
+    Repaired,
+    frame_peaks,
+    frame_reaction_text,
+    repair,
+    there_and_back,
+)
 from trajectory.errors import (
     InvalidPath,
     LimitsExceeded,
@@ -77,6 +87,7 @@ def __getattr__(name: str) -> Any:
 
 
 __all__ = [
+    "FRAME_UNITS",
     "LAWS",
     "LIMITS",
     "SPEED_UNIT",
@@ -85,6 +96,7 @@ __all__ = [
     "CannotWrite",
     "Cycle",
     "EmergencyStop",
+    "FramePeak",
     "InvalidPath",
     "JointField",
     "Law",
@@ -126,6 +138,8 @@ __all__ = [
     "certify_path",
     "cycle_setpoints",
     "emergency_stop",
+    "frame_peaks",
+    "frame_reaction_text",
     "free_motion",
     "in_si",
     "jerk_limited",

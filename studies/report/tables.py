@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from studies.stages import Outcome, Proof, shown_pose
+from studies.stages import Outcome, Proof, Timing, shown_pose
+from trajectory import FRAME_UNITS
 
+FRAME = ("on the frame", "peak", "at [s]", "RMS", "peak along x", "along y", "along z")
 PROOFS = ("claim at every pose", "answer", "boxes", "time [s]", "lowest sampled", "sampled - bound", "at pose")
 
 
@@ -28,6 +30,14 @@ def margin_rows(outcome: Outcome) -> list[tuple[str, ...]]:
             shown_pose(worst.pose),
         )
         for margin, worst in outcome.worst.items()
+    ]
+
+
+def frame_rows(timing: Timing) -> list[tuple[str, ...]]:
+    """What the machine exerts on its frame over the cycle, in the columns `FRAME`."""
+    return [
+        (f"{name} [{FRAME_UNITS[name]}]", *(f"{v:.6g}" for v in (p.peak, p.time, p.rms, *p.axes)))
+        for name, p in timing.frame.items()
     ]
 
 

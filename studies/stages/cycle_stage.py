@@ -14,7 +14,19 @@ from kinematics import InvalidField, LinkwrightError, Mechanism, to_actuators
 from studies.building import approach_limits, home_of, leaving, limits_of, path_of, problem_of, region_of, timing_of
 from studies.errors import ApproachFailed, Failed, RequirementFailed
 from studies.study_file import Study
-from trajectory import Cycle, Limits, Move, Path, Setpoints, Way, cycle_setpoints, lower_bound, there_and_back
+from trajectory import (
+    Cycle,
+    FramePeak,
+    Limits,
+    Move,
+    Path,
+    Setpoints,
+    Way,
+    cycle_setpoints,
+    frame_peaks,
+    lower_bound,
+    there_and_back,
+)
 
 _MOST_SETPOINTS = 1_000_000
 
@@ -27,6 +39,7 @@ class Timing:
         cycle: the way there and the way back, timed and verified.
         setpoints: the cycle's set-points, stretched to whole periods and verified again.
         approach: the move from home; None if the study asks for none.
+        frame: the force and the moment that the machine exerts on its frame, by name.
         lower_bound: time that every motion on this path needs for the way there, even without a jerk limit [s].
         seconds: wall-clock time of timing and verification.
     """
@@ -34,6 +47,7 @@ class Timing:
     cycle: Cycle
     setpoints: Setpoints
     approach: Move | None
+    frame: dict[str, FramePeak]
     lower_bound: float
     seconds: float
 
@@ -63,6 +77,10 @@ class Timing:
             "worst_rms_over_peak_torque": max(float(timed.verification.rms_over_peak.max()) for timed in there),
             **({"limits_not_kept": list(self.cycle.not_kept)} if self.cycle.not_kept else {}),
         }
+
+    def loads(self) -> dict[str, Any]:
+        """What the machine bears and what its frame feels, as plain data; no claim of the optimum."""
+        return {"frame_reaction": {name: peak.as_dict() for name, peak in self.frame.items()}}
 
 
 def margins_on(problem: Problem, robot: Mechanism, ways: Sequence[Way], grid: int) -> dict[str, float]:
@@ -113,7 +131,7 @@ def time_cycle(study: Study, robot: Mechanism) -> Timing:
     _require_few(sum(piece.duration for piece in cycle.pieces), asked.period)
     points = cycle_setpoints(cycle, asked.period, robot.actuator_units)
     bound = sum(lower_bound(robot, piece.path, limits, payload) for piece in cycle.there)
-    return Timing(cycle, points, approach, bound, seconds)
+    return Timing(cycle, points, approach, frame_peaks(cycle), bound, seconds)
 
 
 def _approach(study: Study, robot: Mechanism, path: Path, limits: Limits) -> Move | None:

@@ -1,12 +1,17 @@
 """Cycles: pieces from rest to rest, timed, repaired and verified."""
 
 from trajectory.cycles.cycle import Cycle, Piece, periods_of, there_and_back
+from trajectory.cycles.frame_peaks import FRAME_UNITS, FramePeak, frame_peaks, frame_reaction_text
 from trajectory.cycles.least_stretch import Repaired, repair
 
 __all__ = [
+    "FRAME_UNITS",
     "Cycle",
+    "FramePeak",
     "Piece",
     "Repaired",
+    "frame_peaks",
+    "frame_reaction_text",
     "periods_of",
     "repair",
     "there_and_back",

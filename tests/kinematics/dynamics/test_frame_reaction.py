@@ -108,7 +108,7 @@ def test_rotors_add_the_rate_of_their_own_angular_momentum():
 
 def test_an_arm_whose_inertia_is_a_uniform_bars_turns_the_frame_as_the_bar_does():
     """m l^2 / 3 about its end: the particle at its middle, and the rest as a rotor."""
-    without = "carriage_mass nut_mass distal_mass platform_mass tool carriage motor".split()
+    without = ["carriage_mass", "nut_mass", "distal_mass", "platform_mass", "tool", "carriage", "motor"]
     bar = {"proximal_mass": 1.2, "proximal_centre": 0.5, "proximal_factor": 4 / 3}
     robot = Peppermill(inertia=Peppermill.Inertia(**bar, **dict.fromkeys(without, 0.0)))
     places = (np.arange(400) + 0.5) / 400
