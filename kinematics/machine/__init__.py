@@ -1,5 +1,6 @@
 """The data of a machine: its geometry, masses, drive train and joint ranges."""
 
+from kinematics.machine.beams import Beam, Section
 from kinematics.machine.bodies import UNIFORM, Bodies, InertiaRecord, Particle, Rod, Rotor
 from kinematics.machine.drive_train import REST, DriveTrain
 from kinematics.machine.geometry_fields import TURN, FieldKind, Points, angle, frame, length, ratio, screw_pitch
@@ -28,6 +29,7 @@ from kinematics.machine.members import (
     shared_joints,
     unjoined,
 )
+from kinematics.machine.statics import Cut, LimbStatics, rod_cut
 from kinematics.machine.structure import Structure
 
 __all__ = [
@@ -37,14 +39,17 @@ __all__ = [
     "REST",
     "TURN",
     "UNIFORM",
+    "Beam",
     "Bodies",
     "Connection",
     "Coupling",
+    "Cut",
     "DriveTrain",
     "FieldKind",
     "GeometryRecord",
     "InertiaRecord",
     "JointRanges",
+    "LimbStatics",
     "Link",
     "Load",
     "Material",
@@ -58,6 +63,7 @@ __all__ = [
     "Rod",
     "RodRanges",
     "Rotor",
+    "Section",
     "Structure",
     "Tree",
     "TreeJoint",
@@ -71,6 +77,7 @@ __all__ = [
     "platform",
     "ratio",
     "require_walls",
+    "rod_cut",
     "screw_pitch",
     "shared_joints",
     "universal",

@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.mathematics import singular_values
+from kinematics.mathematics import root_inverse, row_sums, singular_values
 from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
 
 _SURE = 1e-9  # by what a row sum, about 1 in the middle of a box, must be above 0
@@ -54,17 +54,11 @@ class InverseConditionNumber(Margin):
         below, above, mu = scaling[:, :n], scaling[:, n : 2 * n], scaling[0, 2 * n]
         first, second = j_mw @ below, j_mw @ above
         rows = [
-            _row_sums(first.T @ first - claim.bound**2 * mu * below.T @ below) - _SURE,
-            _row_sums(mu * above.T @ above - second.T @ second) - _SURE,
+            row_sums(first.T @ first - claim.bound**2 * mu * below.T @ below) - _SURE,
+            row_sums(mu * above.T @ above - second.T @ second) - _SURE,
         ]
         with_bound = ca.horzcat(j_mw.T @ j_mw, ca.repmat(claim.bound, n, 1))
         return ToShow(ca.vertcat(*rows), scaling, with_bound, _chosen)
-
-
-def _row_sums(matrix: ca.SX) -> ca.SX:
-    """(n,) the diagonal less the moduli beside it."""
-    n = matrix.shape[0]
-    return ca.vertcat(*(matrix[i, i] - sum(ca.fabs(matrix[i, j]) for j in range(n) if j != i) for i in range(n)))
 
 
 def _chosen(values: Array) -> Array:
@@ -75,7 +69,7 @@ def _chosen(values: Array) -> Array:
     smallest, largest = eigenvalues[:, 0], eigenvalues[:, -1]
     mu = np.sqrt(np.maximum(smallest, 0.0) / bound**2 * largest)[:, None, None]
     eye = np.eye(gram.shape[1])
-    both = [_root_inverse(gram - (bound**2)[:, None, None] * mu * eye), _root_inverse(mu * eye - gram)]
+    both = [root_inverse(gram - (bound**2)[:, None, None] * mu * eye), root_inverse(mu * eye - gram)]
     column = np.zeros((*gram.shape[:2], 1))
     column[:, :1] = mu
     return np.concatenate([*both, column], axis=2)
@@ -86,16 +80,6 @@ def _extremes(gram: Array) -> Array:
     usable = np.isfinite(gram).all(axis=(1, 2))
     _, vectors = np.linalg.eigh(np.where(usable[:, None, None], gram, np.eye(gram.shape[1])))
     return vectors[:, :, [0, -1]]
-
-
-def _root_inverse(matrices: Array) -> Array:
-    """(k, n, n) S with S^T A S the identity where A is positive definite; any numbers elsewhere."""
-    usable = np.isfinite(matrices).all(axis=(1, 2))
-    eye = np.eye(matrices.shape[1])
-    values, vectors = np.linalg.eigh(np.where(usable[:, None, None], matrices, eye))
-    size = np.maximum(np.abs(values).max(axis=1, keepdims=True), 1e-200)
-    result: Array = vectors / np.sqrt(np.maximum(values, 1e-14 * size))[:, None, :]
-    return result
 
 
 INVERSE_CONDITION_NUMBER = InverseConditionNumber()

@@ -8,6 +8,7 @@ from kinematics.mathematics.jacobi_rotations import singular_values
 from kinematics.mathematics.orientation import angles, rotation, turn
 from kinematics.mathematics.polynomial_product import product
 from kinematics.mathematics.polynomial_roots import real_roots
+from kinematics.mathematics.positive_definite import cholesky, root_inverse, row_sums, smallest_eigenvalue
 from kinematics.mathematics.rigid_displacements import displacement, leg_quadrics, study_quadric
 from kinematics.mathematics.scaling import near_inverse
 from kinematics.mathematics.segment_distance import segment_distances, segment_gap_symbolic
@@ -18,6 +19,7 @@ __all__ = [
     "adjugate",
     "angles",
     "bisected",
+    "cholesky",
     "determinant",
     "displacement",
     "distinct",
@@ -28,10 +30,13 @@ __all__ = [
     "product",
     "real_roots",
     "refine",
+    "root_inverse",
     "rotation",
+    "row_sums",
     "segment_distances",
     "segment_gap_symbolic",
     "singular_values",
+    "smallest_eigenvalue",
     "study_quadric",
     "track",
     "turn",

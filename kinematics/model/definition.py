@@ -18,6 +18,7 @@ from kinematics.machine import (
     GeometryRecord,
     InertiaRecord,
     JointRanges,
+    LimbStatics,
     Member,
     PassiveJoint,
     Reference,
@@ -119,6 +120,13 @@ class Definition(ABC):
     @abstractmethod
     def members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
         """The straight bodies with their thickness. Those that share no joint must not touch: `clearance`."""
+
+    def statics(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[LimbStatics]:
+        """What each limb transmits to the platform, and how it gives way: `stiffness`. By default only drives do."""
+        phi = self.closure(pose, joints, g)
+        j_q, by_twist = ca.diag(ca.jacobian(phi, joints)), self.closure_by_twist(pose, joints, g)
+        efforts = ca.SX.eye(joints.numel())
+        return [LimbStatics(-(by_twist[i, :] / j_q[i]).T, ca.SX(1, 1), efforts[:, i]) for i in range(joints.numel())]
 
     @classmethod
     def drives(cls, g: SimpleNamespace) -> ca.SX:  # noqa: ARG003

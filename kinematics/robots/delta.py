@@ -14,18 +14,20 @@ from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import Bodies, GeometryRecord, Member, Particle, angle, length, platform
 from kinematics.margins import PASSIVE_JOINT, STANDARD
-from kinematics.mathematics import not_below_zero
+from kinematics.mathematics import determinant, not_below_zero
 from kinematics.model import Build, FviBounds, Model, by_name
 from kinematics.robots.shared import (
+    INTERNAL_DETERMINANT,
     ArmInertia,
     ArmRanges,
     Limbs,
-    RotaryLimbs,
+    PairedArms,
     arms_and_rods,
     central_limbs,
     columns,
     height_in_reach,
     limb_members,
+    means_and_differences,
     radial_directions,
     studs,
 )
@@ -72,7 +74,7 @@ class DeltaInertia(ArmInertia):
     plate_mass: float = 0.45
 
 
-class Delta(RotaryLimbs):
+class Delta(PairedArms):
     """Pose [x, y, z] of the plate's centre, joints q1..q3 measured from e_z outward. Elbows are usually out."""
 
     Geometry = DeltaGeometry
@@ -85,7 +87,10 @@ class Delta(RotaryLimbs):
     joint_units = ("rad",) * 3
     rotations = ()
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
-    margins = by_name(*STANDARD, PASSIVE_JOINT)
+    margins = by_name(*STANDARD, INTERNAL_DETERMINANT, PASSIVE_JOINT)
+    rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "omega_z")
+    row_combinations = means_and_differences(3)
+    column_combinations = np.eye(6)
 
     @property
     def characteristic_length(self) -> float:
@@ -113,6 +118,17 @@ class Delta(RotaryLimbs):
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
         """L l for each J_q,i; l^3 for det J_x."""
         return ca.repmat(g.arm_length * g.rod_length, 3, 1), g.rod_length**3
+
+    # The rods, one by one.
+
+    @staticmethod
+    def carried(pose: ca.SX, displacement: ca.SX, limb: int, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:  # noqa: ARG004
+        """The plate moves freely."""
+        return displacement[:3], displacement[3:]
+
+    def internal_determinant_symbolic(self) -> ca.SX:
+        """det of the three `parallelogram_normals`: det J_int over d^3 l^3."""
+        return determinant(self.parallelogram_normals())
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, rods, plate and payload."""

@@ -15,13 +15,14 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.errors import InvalidShape
-from kinematics.machine import TURN, Bodies, Member, Particle, PassiveJoint, Rotor, Tube, shared_joints
+from kinematics.machine import TURN, Bodies, LimbStatics, Member, Particle, PassiveJoint, Rotor, Tube, shared_joints
 from kinematics.margins import PASSIVE_JOINT, STANDARD
 from kinematics.model import FviBounds, Mechanism, Mode, Model, by_name
 from kinematics.robots.gough_stewart.forward import ForwardSolution, assembly_modes, matched_pose
 from kinematics.robots.gough_stewart.geometry import GoughStewartGeometry, GoughStewartInertia, GoughStewartRanges
 from kinematics.robots.gough_stewart.links import links
 from kinematics.robots.gough_stewart.six_legs import SixLegs
+from kinematics.robots.shared import rod_statics
 
 _SCREW = ("x", "y", "z", "about x", "about y", "about z")
 
@@ -253,6 +254,16 @@ class GoughStewart(SixLegs):
             for i, names in enumerate(held)
         ]
         return [*found, self.platform_member(base + legs, g)]
+
+    def statics(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[LimbStatics]:
+        """Legs in tension, each a cylinder of the leg's own length."""
+        members = self.members(pose, joints, g)
+        legs, wrenches, efforts = self.legs(pose, g), self.closure_by_twist(pose, joints, g).T, -ca.SX.eye(6)
+        along = legs @ ca.diag(1 / joints)
+        return [
+            rod_statics(members[i : i + 1], self.structure, wrenches[:, i], along[:, i], joints[i], efforts[:, i])
+            for i in range(6)
+        ]
 
     @staticmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:  # noqa: ARG004

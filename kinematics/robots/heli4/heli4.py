@@ -26,11 +26,11 @@ from kinematics.robots.shared import (
     INTERNAL_DETERMINANT,
     ArmRanges,
     Limbs,
-    RodLevel,
-    RotaryLimbs,
+    PairedArms,
     central_limbs,
     height_in_reach,
     limb_members,
+    means_and_differences,
     outline,
     radial_directions,
     studs,
@@ -42,7 +42,7 @@ _APART = 0.25  # times a rod's length: if the plates are further apart, the orde
 _OPEN = 1e-12  # rad, or times the robot's size: the largest error of a closed form, as a displacement
 
 
-class Heli4(RotaryLimbs, RodLevel):
+class Heli4(PairedArms):
     """Pose [x, y, z, theta], joints q1..q4 measured from e_z."""
 
     Geometry = Heli4Geometry
@@ -59,7 +59,7 @@ class Heli4(RotaryLimbs, RodLevel):
     margins = by_name(*STANDARD, INTERNAL_DETERMINANT, PASSIVE_JOINT)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta", "epsilon_1", "epsilon_2")
     # (51): sums and differences of a limb's two rods; the plates' own rotations instead of the relative ones.
-    row_combinations = np.vstack([np.kron(np.eye(4), [0.5, 0.5]), np.kron(np.eye(4), [1.0, -1.0])])
+    row_combinations = means_and_differences(4)
     column_combinations = np.eye(8)[[0, 1, 2, 4, 5, 3, 6, 7]] - np.outer([0] * 6 + [1, 1], np.eye(8)[3])
 
     @property
@@ -102,33 +102,20 @@ class Heli4(RotaryLimbs, RodLevel):
     # The rods, one by one.
 
     @staticmethod
-    def rod_closure(pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(8,) rods 11, 12, 21, ... 42; (47). The plates turn by theta + epsilon; the upper one rises by -p epsilon_2.
+    def carried(pose: ca.SX, displacement: ca.SX, limb: int, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:  # noqa: ARG004
+        """The plates turn by theta + epsilon; the upper one rises by -p epsilon_2.
 
         The paper prints the opposite sign of p in (49), (53) and (54), which contradicts its own (6).
         """
-        _, axis = radial_directions(g.azimuths)
-        arms, platforms = Heli4.limbs(g).elbows(joints), Heli4.platform_points(pose, g)
-        rods = []
-        for limb in range(4):
-            plate = ca.vertcat(displacement[3:5], displacement[5] + displacement[6 + limb // 2])
-            climb = -UPPER[limb] * g.pitch / TURN * displacement[7]
-            for side in (-0.5, 0.5):
-                offset = side * g.parallelogram_width * axis[:, limb]
-                end = platforms[:, limb] + offset
-                moved = end + displacement[:3] + ca.cross(plate, end - pose[:3]) + climb * _E_Z
-                rods.append((ca.sumsqr(arms[:, limb] + offset - moved) - g.rod_length**2) / 2)
-        result: ca.SX = ca.vertcat(*rods)
-        return result
+        climb = -UPPER[limb] * g.pitch / TURN * displacement[7]
+        turn = ca.vertcat(displacement[3:5], displacement[5] + displacement[6 + limb // 2])
+        return displacement[:3] + climb * _E_Z, turn
 
     def internal_determinant_symbolic(self) -> ca.SX:
         """Expression (59) over d^4 l^4."""
-        model = self.model()
-        rods = model.at_pose(self.rods(model.pose, model.joints, model.g))
-        _, axis = radial_directions(model.g.azimuths)
-        normals = [ca.cross(axis[:, i], rods[:, i]) for i in range(4)]
+        normals = ca.horzsplit(self.parallelogram_normals())
         lines = ca.cross(normals[0], normals[1]), ca.cross(normals[2], normals[3])
-        result: ca.SX = ca.cross(*lines)[2] / model.g.rod_length**4
+        result: ca.SX = ca.cross(*lines)[2]
         return result
 
     bodies = bodies

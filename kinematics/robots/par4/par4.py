@@ -19,27 +19,30 @@ from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import AXES, TURN, Bodies, Member, Particle, Rotor, Tube, angle, bar, length, ratio
 from kinematics.margins import PASSIVE_JOINT, STANDARD
-from kinematics.mathematics import determinant, distinct, working_first
+from kinematics.mathematics import determinant, distinct, volume, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, joined_to_home, polished
 from kinematics.robots.par4.forward import Halves, candidates
 from kinematics.robots.par4.links import links
 from kinematics.robots.par4.pi_joint import PI_JOINT
 from kinematics.robots.shared import (
+    INTERNAL_DETERMINANT,
     ArmInertia,
     ArmRanges,
     HalvesGeometry,
     Limbs,
-    RotaryLimbs,
+    PairedArms,
     arms_and_rods,
     central_limbs,
     columns,
     height_in_reach,
     limb_members,
+    means_and_differences,
     radial_directions,
     studs,
 )
 
 _DEG = math.pi / 180.0
+_LARGEST_VOLUME = (4 / 3) ** 1.5  # of N^T N with trace 4: three equal eigenvalues
 _HALF = (-1.0, -1.0, 1.0, 1.0)  # which end of the bars each limb holds
 
 
@@ -83,7 +86,7 @@ class Par4Inertia(ArmInertia):
     tool: float = 2e-4
 
 
-class Par4(RotaryLimbs):
+class Par4(PairedArms):
     """Pose [x, y, z, theta], joints q1..q4 measured from e_z outward. Elbows are out.
 
     The bars are turned by psi = theta / k. Beyond half a turn of the bars, the same place has another theta. The
@@ -101,7 +104,10 @@ class Par4(RotaryLimbs):
     rotations = (3,)
     counts_turns = True  # of the bars, by the gear
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
-    margins = by_name(*STANDARD, PI_JOINT, PASSIVE_JOINT)
+    margins = by_name(*STANDARD, PI_JOINT, INTERNAL_DETERMINANT, PASSIVE_JOINT)
+    rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "omega_z", "theta")
+    row_combinations = means_and_differences(4)
+    column_combinations = np.eye(7)[:, [0, 1, 2, 6, 3, 4, 5]]
 
     @property
     def characteristic_length(self) -> float:
@@ -142,6 +148,20 @@ class Par4(RotaryLimbs):
         det J_x is +- b / k ((l1 x l2) x (l3 x l4)) . e, l_i the rods and e the horizontal normal of the bars.
         """
         return ca.repmat(g.arm_length * g.rod_length, 4, 1), g.bar_length / g.amplification * g.rod_length**4
+
+    # The rods, one by one.
+
+    @staticmethod
+    def carried(pose: ca.SX, displacement: ca.SX, limb: int, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """Both halves turn by omega, and the bars by (theta - omega_z) / k more, which the gear makes of the tool's."""
+        omega, psi = displacement[3:6], pose[3] / g.amplification
+        half = _HALF[limb] * Par4.half_bar(psi, g)
+        further = (displacement[6] - omega[2]) / g.amplification
+        return displacement[:3] + further * ca.cross(ca.SX([0, 0, 1]), half), omega
+
+    def internal_determinant_symbolic(self) -> ca.SX:
+        """Volume of the four `parallelogram_normals` over the largest of four unit vectors, (4/3)^(3/2)."""
+        return volume(self.parallelogram_normals().T) / _LARGEST_VOLUME
 
     link_tree = links
 

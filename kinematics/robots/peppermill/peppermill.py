@@ -36,6 +36,7 @@ from kinematics.model import Build, FviBounds, Mechanism, Mode, Model, by_name
 from kinematics.robots.peppermill import limbs
 from kinematics.robots.peppermill.geometry import PeppermillGeometry, PeppermillInertia, PeppermillRanges
 from kinematics.robots.peppermill.links import links
+from kinematics.robots.peppermill.statics import statics
 
 _E_Z = ca.DM([0, 0, 1])
 
@@ -239,14 +240,22 @@ class Peppermill(Mechanism):
         return bodies
 
     @classmethod
-    def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
-        """Proximal and distal links, and the screws between the nuts.
+    def points_apart(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX, ca.SX]:
+        """A_i, B_i and P_i, each (3, 2), of the machine as it is built.
 
         The paper's nuts coincide at theta = 0. Limb 1 is moved down and limb 2 up, by half of `nut_spacing` each: the
         same machine with its drive axes further apart.
         """
         apart = _E_Z @ (g.nut_spacing / 2 * ca.DM([[-1, 1]]))
         carriages, elbows, nuts = (points + apart for points in cls.points(pose, joints, g)[1:])
+        return carriages, elbows, nuts
+
+    statics = statics
+
+    @classmethod
+    def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+        """Proximal and distal links, and the screws between the nuts; all at `points_apart`."""
+        carriages, elbows, nuts = cls.points_apart(pose, joints, g)
         found = [bar("screws", ("nut 1", "nut 2"), "screw", nuts[:, 0], nuts[:, 1], g.screw_radius)]
         for i, k in enumerate(("1", "2")):
             slide, elbow, nut = f"carriage {k}", f"elbow {k}", f"nut {k}"

@@ -20,6 +20,7 @@ from kinematics.machine import (
     Bodies,
     GeometryRecord,
     InertiaRecord,
+    LimbStatics,
     Member,
     Particle,
     Points,
@@ -32,7 +33,7 @@ from kinematics.margins import STANDARD
 from kinematics.mathematics import distinct
 from kinematics.model import Build, Mechanism, Model, by_name, joined_to_home
 from kinematics.robots.planar.forward import placements, rods_and_determinant
-from kinematics.robots.shared import ALIKE, twins
+from kinematics.robots.shared import ALIKE, rod_statics, rods_of, twins
 
 _AROUND = [0, 1, 2, 0]
 _FAR = 1e60  # [m] or [rad], its fifth power still a double
@@ -162,6 +163,19 @@ class Planar(Mechanism):
         ]
         shapes = platform(ends, np.array(self.geometry.platform_points), g.plate_thickness)
         return [*links, Member("platform", tuple(held), "plate", shapes)]
+
+    def statics(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[LimbStatics]:
+        """Each leg's link in tension, on its drive. Only the freedoms in the plane count."""
+        members = self.members(pose, joints, g)
+        centres, radii = self.circles(joints, g)
+        rods, lengths = self.platform_points(pose, g) - centres, radii + 0 * joints
+        gaps = (ca.sum1(rods * rods).T - radii**2) / 2
+        along, per_length = rods @ ca.diag(1 / lengths), ca.diag(1 / lengths)
+        wrenches, efforts = (ca.jacobian(gaps, v).T @ per_length for v in (pose, joints))
+        return [
+            rod_statics(rods_of(i, members), self.structure, -wrenches[:, i], along[:, i], lengths[i], efforts[:, i])
+            for i in range(3)
+        ]
 
     @staticmethod
     def link(start: ca.SX, end: ca.SX, g: SimpleNamespace) -> Tube:

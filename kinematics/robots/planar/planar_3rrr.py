@@ -95,6 +95,8 @@ class Planar3RRR(Planar, RotaryLimbs):
         ]
         return arms + super().members(pose, joints, g)
 
+    statics = RotaryLimbs.statics
+
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, drives, rods and platform."""
         bodies = arms_and_rods(self, pose, joints, g, self.inertia.link_mass, ["platform"] * 3)

@@ -42,7 +42,8 @@ from kinematics.robots.redundant_3t1r.geometry import (
 )
 from kinematics.robots.redundant_3t1r.members import members
 from kinematics.robots.redundant_3t1r.singularities import ParallelSingularity, parallel_conditions
-from kinematics.robots.shared import INTERNAL_DETERMINANT, RodLevel, outline
+from kinematics.robots.redundant_3t1r.statics import statics
+from kinematics.robots.shared import INTERNAL_DETERMINANT, SIDES, RodLevel, outline
 
 _AHEAD = ca.DM([-0.5, -0.5, 0.5, 0.5, -0.5, -0.5])  # B_i along the platform's x, in units of d
 _ABOVE = ca.DM([0.5, 0.5, 0.0, 0.0, -0.5, -0.5])  # B_i along e_z, in units of a
@@ -160,19 +161,29 @@ class Redundant3T1R(RodLevel):
         return [PassiveJoint(up, arms[:, i], lengths[i], end) for end in (0, 1) for i in range(LIMBS)]
 
     @staticmethod
-    def rod_closure(pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """Eight rods to one rigid platform, which may tilt."""
-        rails, platform = Redundant3T1R.rail_points(joints, g), Redundant3T1R.platform_points(pose, g)
-        lengths, rods = Redundant3T1R.arm_lengths(g), []
-        for limb in range(LIMBS):
-            for side in (-0.5, 0.5) if limb in PARALLELOGRAMS else (0.0,):
-                offset = ca.vertcat(0, 0, side * g.parallelogram_width)
-                end = platform[:, limb] + offset
-                moved = end + displacement[:3] + ca.cross(displacement[3:], end - pose[:3])
-                rod = moved - rails[:, limb] - offset
-                rods.append((lengths[limb] ** 2 - ca.sumsqr(rod)) / (2 * lengths[limb]))
-        result: ca.SX = ca.vertcat(*rods)
-        return result
+    def limb_ends(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """Slides and platform points."""
+        return Redundant3T1R.rail_points(joints, g), Redundant3T1R.platform_points(pose, g)
+
+    @staticmethod
+    def rods_aside(g: SimpleNamespace) -> list[tuple[int, ca.SX]]:
+        """Eight rods: one above the other in arms 3 and 4."""
+        upright = g.parallelogram_width * ca.SX([0, 0, 1])
+        sides = [(SIDES.values() if limb in PARALLELOGRAMS else (0.0,)) for limb in range(LIMBS)]
+        return [(limb, side * upright) for limb in range(LIMBS) for side in sides[limb]]
+
+    rod_lengths = arm_lengths
+
+    @staticmethod
+    def carried(pose: ca.SX, displacement: ca.SX, limb: int, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:  # noqa: ARG004
+        """All hold one rigid platform."""
+        return displacement[:3], displacement[3:]
+
+    @classmethod
+    def rod_closure(cls, pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(L^2 - |rod|^2) / (2 L), as `closure`."""
+        lengths = ca.vertcat(*(cls.rod_lengths(g)[limb] for limb, _ in cls.rods_aside(g)))
+        return -super().rod_closure(pose, displacement, joints, g) / lengths
 
     def internal_determinant_symbolic(self) -> ca.SX:
         """(n_3 x n_4) . e_z: det J_int over the square of the parallelograms' width."""
@@ -213,6 +224,7 @@ class Redundant3T1R(RodLevel):
         return arm_distances(rails, platform, self.geometry.parallelogram_width if rods else 0.0)
 
     members = members
+    statics = statics
 
     def arm_clearance(self, pose: Array, rods: bool = False) -> Array:
         """(...,) the smallest of `arm_distances` [m], between axes: subtract the arms' thickness."""

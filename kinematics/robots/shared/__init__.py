@@ -4,7 +4,9 @@ from kinematics.robots.shared.arm_masses import ArmInertia, arms_and_rods
 from kinematics.robots.shared.coincident_limbs import ALIKE, HalvesGeometry, twins
 from kinematics.robots.shared.internal_determinant import INTERNAL_DETERMINANT
 from kinematics.robots.shared.limb_members import SIDES, limb_members, studs
-from kinematics.robots.shared.paired_rods import RodLevel, outline
+from kinematics.robots.shared.limb_statics import beam, rod_statics, rods_of
+from kinematics.robots.shared.paired_arms import PairedArms
+from kinematics.robots.shared.paired_rods import RodLevel, means_and_differences, outline
 from kinematics.robots.shared.rotary_limbs import (
     ArmRanges,
     Limbs,
@@ -24,15 +26,20 @@ __all__ = [
     "ArmRanges",
     "HalvesGeometry",
     "Limbs",
+    "PairedArms",
     "RodLevel",
     "RotaryLimbs",
     "arms_and_rods",
+    "beam",
     "central_limbs",
     "columns",
     "height_in_reach",
     "limb_members",
+    "means_and_differences",
     "outline",
     "radial_directions",
+    "rod_statics",
+    "rods_of",
     "studs",
     "twins",
     "upright_limbs",

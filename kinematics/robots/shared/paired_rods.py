@@ -28,20 +28,60 @@ class BlockTriangular(NamedTuple):
 
 
 class RodLevel(Mechanism):
-    """A mechanism that also states the length of each single rod."""
+    """A mechanism that also knows its single rods, and how the bodies that they hold can move."""
 
     rod_velocities: ClassVar[tuple[str, ...]]  # what v holds
     row_combinations: ClassVar[np.ndarray]  # M of (51)
-    column_combinations: ClassVar[np.ndarray]  # P of (51)
+    column_combinations: ClassVar[np.ndarray]  # P of (51): the twist first, then the other freedoms
+
+    @classmethod
+    @abstractmethod
+    def limb_ends(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """A_i (3, m) and B_i (3, m), the ends of each limb's rod, or of the line midway between its two rods."""
+
+    @classmethod
+    @abstractmethod
+    def rods_aside(cls, g: SimpleNamespace) -> list[tuple[int, ca.SX]]:
+        """The limb of each rod, from 0, and how far the rod is beside A_i B_i (3,)."""
 
     @staticmethod
     @abstractmethod
-    def rod_closure(pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """(k,) each rod's own `closure` after a small displacement in the directions of `rod_velocities`."""
+    def rod_lengths(g: SimpleNamespace) -> ca.SX:
+        """(m,) of each limb's rods."""
+
+    @staticmethod
+    @abstractmethod
+    def carried(pose: ca.SX, displacement: ca.SX, limb: int, g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
+        """Shift (3,) and turn (3,) of the body that a limb holds, about the tool point, to first order.
+
+        They are linear in `displacement`, which is in the directions of `rod_velocities`.
+        """
 
     @abstractmethod
     def internal_determinant_symbolic(self) -> ca.SX:
         """det J_int, up to a sign, over what makes it dimensionless in [-1, 1]."""
+
+    @classmethod
+    def rod_closure(cls, pose: ca.SX, displacement: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(k,) half of |A B|^2 - l^2 of each rod after a small displacement; (47)."""
+        (starts, ends), lengths, rows = cls.limb_ends(pose, joints, g), cls.rod_lengths(g), []
+        for limb, aside in cls.rods_aside(g):
+            shift, turn = cls.carried(pose, displacement, limb, g)
+            end = ends[:, limb] + aside
+            moved = end + shift + ca.cross(turn, end - pose[:3])
+            rows.append((ca.sumsqr(starts[:, limb] + aside - moved) - lengths[limb] ** 2) / 2)
+        return ca.vertcat(*rows)
+
+    @classmethod
+    def rod_wrenches(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(f, k) what each rod's tension of 1 N does to the freedoms: the twist, then the others of `P`."""
+        (starts, ends), lengths, columns = cls.limb_ends(pose, joints, g), cls.rod_lengths(g), []
+        displacement = ca.SX.sym("displacement", len(cls.rod_velocities))
+        for limb, aside in cls.rods_aside(g):
+            shift, turn = (ca.jacobian(v, displacement) for v in cls.carried(pose, displacement, limb, g))
+            pull = (starts[:, limb] - ends[:, limb]) / lengths[limb]
+            columns.append(shift.T @ pull + turn.T @ ca.cross(ends[:, limb] + aside - pose[:3], pull))
+        return ca.DM(cls.column_combinations).T @ ca.horzcat(*columns)
 
     def rod_system_symbolic(self) -> tuple[ca.SX, ca.SX]:
         """J_l (k, m) and J_r (k, v) of (49) at a pose, by differentiation of the rods' lengths."""
@@ -80,6 +120,12 @@ def _blocks(robot: RodLevel, _: Model) -> list[ca.SX]:
     left = ca.DM(robot.row_combinations) @ j_l
     right = ca.DM(robot.row_combinations) @ j_r @ ca.DM(robot.column_combinations)
     return [left[:m, :], right[:m, :n], right[:m, n:], right[m:, n:]]
+
+
+def means_and_differences(limbs: int) -> np.ndarray:
+    """(2 m, 2 m) the means of each limb's two rows, then their differences: `row_combinations` of m pairs."""
+    result: np.ndarray = np.vstack([np.kron(np.eye(limbs), [0.5, 0.5]), np.kron(np.eye(limbs), [1.0, -1.0])])
+    return result
 
 
 def outline(start: ca.SX, end: ca.SX, half: ca.SX) -> ca.SX:

@@ -20,11 +20,13 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.machine import (
     GeometryRecord,
+    LimbStatics,
     Pair,
     PassiveJoint,
     RodRanges,
 )
 from kinematics.model import Mechanism, Mode
+from kinematics.robots.shared.limb_statics import arm_statics
 
 _LEVEL = 1e-9  # times the robot's size: a platform point that is closer to the drive's level counts as level with it
 
@@ -164,6 +166,21 @@ class RotaryLimbs(Mechanism):
             for end, axes in enumerate((limbs.axes(), turned))
             for i in range(joints.numel())
         ]
+
+    @classmethod
+    def rods_aside(cls, g: SimpleNamespace) -> list[tuple[int, ca.SX]]:  # noqa: ARG003
+        """The limb of each rod, from 0, and how far the rod is beside A_i B_i (3,); here each limb has one rod."""
+        return [(i, ca.SX.zeros(3)) for i in range(len(cls.joint_names))]
+
+    @classmethod
+    def rod_wrenches(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(f, k) what a tension of 1 N in each rod does to the platform's freedoms, which here are the twist."""
+        by_twist: ca.SX = cls.closure_by_twist(pose, joints, g)
+        return -by_twist.T @ ca.diag(1 / ca.repmat(cls.limbs(g).rod, joints.numel() // cls.limbs(g).rod.numel(), 1))
+
+    def statics(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[LimbStatics]:
+        """Rods in tension; arms in bending, torsion and tension."""
+        return arm_statics(self, pose, joints, g)
 
     @classmethod
     def platform_axes(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:  # noqa: ARG003

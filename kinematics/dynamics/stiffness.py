@@ -1,0 +1,128 @@
+"""Cartesian stiffness by virtual work, from the statics of the limbs.
+
+Under transmitted forces t, drives and members store the energy t^T C t / 2. A small motion v of the platform's freedoms
+moves the points of these forces by W^T v, so t = C^-1 W^T v, and the platform meets the load K v, K = W C^-1 W^T. This
+holds whether the limbs are as many as the freedoms or more.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import casadi as ca
+import numpy as np
+
+from kinematics.dynamics.drive_torque import moving_bodies
+from kinematics.errors import InvalidValue
+from kinematics.machine import Cut
+from kinematics.mathematics import adjugate
+from kinematics.model import Mechanism, Model
+
+
+class Transmission(NamedTuple):
+    """The forces that all limbs transmit to the platform, in the model's symbols `pose`, `joints` and `geometry`.
+
+    Attributes:
+        wrenches: (f, k) on the platform's freedoms, as in `LimbStatics`.
+        compliance: (k, k) of members, joints and drives.
+        cuts: the loads of the members for each of the k forces.
+    """
+
+    wrenches: ca.SX
+    compliance: ca.SX
+    cuts: list[Cut]
+
+
+def transmission(robot: Mechanism) -> Transmission:
+    """Of a robot, with its drives' stiffness."""
+    model = robot.model()
+    limbs = robot.statics(model.pose, model.joints, model.g)
+    count, first, cuts = sum(limb.wrenches.shape[1] for limb in limbs), 0, []
+    for limb in limbs:
+        own = limb.wrenches.shape[1]
+        before, after = ca.SX(3, first), ca.SX(3, count - first - own)
+        for cut in limb.cuts:
+            force, moment = (ca.horzcat(before, v, after) for v in (cut.force, cut.moment))
+            cuts.append(cut._replace(force=force, moment=moment))
+        first += own
+    efforts = ca.horzcat(*(limb.efforts for limb in limbs))
+    members = ca.diagcat(*(limb.compliance for limb in limbs))
+    compliance = ca.sparsify(members + _drives_compliance(robot, model, efforts))
+    return Transmission(ca.horzcat(*(limb.wrenches for limb in limbs)), compliance, cuts)
+
+
+def _drives_compliance(robot: Mechanism, model: Model, efforts: ca.SX) -> ca.SX:
+    """(k, k) of drives that bear the joints' efforts (m, k)."""
+    stiffness = robot.inertia.drive_train.of_actuators("stiffness", efforts.shape[0])
+    if not model.drives.is_eye():
+        transposed, det = adjugate(model.drives.T)  # actuators and joints do the same work
+        efforts = transposed @ efforts / det
+    return efforts.T @ ca.diag(ca.sparsify(ca.DM(1 / stiffness))) @ efforts
+
+
+def stiffness_parts(robot: Mechanism) -> list[tuple[ca.SX, ca.SX]]:
+    """W_b (f, k) and X_b (k, k) at a pose, with K the sum of W_b X_b W_b^T; none if nothing gives way.
+
+    Raises:
+        InvalidValue: some forces meet nothing that gives way, others do.
+    """
+    whole = transmission(robot)
+    wrenches, compliance = whole.wrenches, whole.compliance
+    if compliance.nnz() == 0:
+        return []
+    rigid = [k + 1 for k in range(compliance.shape[0]) if compliance[k, k].is_zero()]
+    if rigid:
+        what = f"{type(robot).__name__} stiffness: transmitted force {rigid[0]} of {compliance.shape[0]}"
+        raise InvalidValue(what, "only rigid parts", "a drive, joint or member that gives way for each force, or none")
+    at_pose = robot.model().at_pose(ca.horzcat(wrenches.T, compliance))
+    wrenches, compliance = at_pose[:, : wrenches.shape[0]].T, at_pose[:, wrenches.shape[0] :]
+    parts = []
+    for block in _blocks(compliance):
+        cofactors, det = adjugate(compliance[block, block], symmetric=True)
+        parts.append((wrenches[:, block], cofactors / det))
+    return parts
+
+
+def stiffness_matrix(robot: Mechanism) -> ca.SX:
+    """(f, f) at a pose, of all freedoms of the platform: the twist, then what the pose does not have."""
+    return sum_of(stiffness_parts(robot))
+
+
+def sum_of(parts: list[tuple[ca.SX, ca.SX]]) -> ca.SX:
+    """(f, f) the sum of W X W^T for symmetric X; entries beyond the diagonal are computed once."""
+    count = parts[0][0].shape[0]
+    result = ca.SX(count, count)
+    for wrenches, inner in parts:
+        half = wrenches @ inner
+        for i in range(count):
+            for j in range(i + 1):
+                result[i, j] += ca.dot(half[i, :], wrenches[j, :])
+    return ca.tril2symm(result)
+
+
+def mass_matrix(robot: Mechanism, payload: float | ca.SX) -> ca.SX:
+    """(n, n) of the twist at a pose: twice the kinetic energy of all bodies, motors too, is t^T M t."""
+    model = robot.model()
+    bodies, by_twist = moving_bodies(robot, model, payload), robot.pose_rate_map(model.pose)
+    joint_rates = ca.diag(1 / model.j_q) @ model.j_x
+    result = ca.SX(by_twist.shape[1], by_twist.shape[1])
+    moved = [(particle.mass, particle.point) for particle in bodies.all_particles()]
+    moved += [(rotor.inertia, rotor.angle) for rotor in bodies.rotors]
+    for mass, place in moved:
+        rate = ca.jacobian(place, model.joints) @ joint_rates + ca.jacobian(place, model.pose) @ by_twist
+        result += mass * (rate.T @ rate)
+    return model.at_pose(result)
+
+
+def _blocks(matrix: ca.SX) -> list[list[int]]:
+    """The rows of a symmetric matrix in groups that have no entry with another group's."""
+    joined = np.array(ca.DM.ones(ca.sparsify(matrix).sparsity())) != 0.0
+    left, groups = set(range(len(joined))), []
+    while left:
+        group, fresh = set[int](), {min(left)}
+        while fresh:
+            group |= fresh
+            fresh = {int(k) for i in fresh for k in np.flatnonzero(joined[i])} - group
+        groups.append(sorted(group))
+        left -= group
+    return groups
