@@ -8,6 +8,7 @@ from kinematics.coordinates import LENGTHS, is_length
 from kinematics.dynamics import (
     FrameReaction,
     JointMotion,
+    MemberForces,
     actuator_motion,
     derivatives_along,
     frame_reaction,
@@ -15,6 +16,7 @@ from kinematics.dynamics import (
     from_actuators,
     inverse_dynamics,
     joint_motion,
+    member_forces,
     to_actuators,
     torques,
 )
@@ -101,6 +103,7 @@ __all__ = [
     "Margin",
     "Measure",
     "Mechanism",
+    "MemberForces",
     "Model",
     "Op",
     "Par4",
@@ -133,6 +136,7 @@ __all__ = [
     "joint_motion",
     "kind_of",
     "loop_mobility",
+    "member_forces",
     "mjcf",
     "mobility_of_identical_chains",
     "over_spans",

@@ -11,11 +11,18 @@ from kinematics.dynamics.drive_torque import (
     torques,
 )
 from kinematics.dynamics.frame_reaction import FrameReaction, frame_reaction
+from kinematics.dynamics.member_forces import MemberForces, member_forces
+from kinematics.dynamics.member_loads import MemberLoad, loads_at_rest, loads_in_motion
+from kinematics.dynamics.safety_factors import Size, WorstDirection, safety_factors
 
 __all__ = [
     "GRAVITY",
     "FrameReaction",
     "JointMotion",
+    "MemberForces",
+    "MemberLoad",
+    "Size",
+    "WorstDirection",
     "actuator_motion",
     "derivatives_along",
     "frame_reaction",
@@ -23,8 +30,12 @@ __all__ = [
     "from_actuators",
     "inverse_dynamics",
     "joint_motion",
+    "loads_at_rest",
+    "loads_in_motion",
+    "member_forces",
     "moving_bodies",
     "require_payload",
+    "safety_factors",
     "to_actuators",
     "torques",
 ]

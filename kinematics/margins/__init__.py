@@ -9,6 +9,7 @@ from kinematics.margins.parallel import DET_J_X
 from kinematics.margins.passive_joint import PASSIVE_JOINT
 from kinematics.margins.reach import REACH
 from kinematics.margins.serial import DET_J_Q, J_Q
+from kinematics.margins.strength import STRENGTH
 
 # What every mechanism has.
 STANDARD = (
@@ -23,6 +24,7 @@ STANDARD = (
     J_Q,
     DET_J_Q,
     DET_J_X,
+    STRENGTH,
 )
 
 __all__ = ["CLEARANCE", "PASSIVE_JOINT", "STANDARD"]

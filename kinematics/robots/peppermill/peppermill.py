@@ -225,7 +225,7 @@ class Peppermill(Mechanism):
             carriage, link = carriages[:, limb], elbows[:, limb] - carriages[:, limb]
             centre = i.proximal_centre * g.proximal_lengths[limb]
             own = (i.proximal_factor - 1) * i.proximal_mass * centre**2  # beyond the particle at the centre of mass
-            slide, proximal, nut = (f"{name} {limb + 1}" for name in ("carriage", "proximal", "nut"))
+            slide, proximal, nut = (f"{name} {limb + 1}" for name in ("carriage", "proximal link", "nut"))
             bodies.particles.extend(
                 [
                     Particle(slide, i.carriage_mass, carriage),
@@ -251,6 +251,14 @@ class Peppermill(Mechanism):
         return carriages, elbows, nuts
 
     statics = statics
+
+    @classmethod
+    def beyond_twist(cls, pose: ca.SX, g: SimpleNamespace, limb: int | None, point: ca.SX) -> ca.SX:
+        """Two tilts about the tool point, and each nut's own turn, by which it falls."""
+        tilts, turns = -ca.skew(point - pose[:3])[:, :2], ca.SX(3, 2)
+        if limb is not None:
+            turns[2, limb] = -g.pitches[limb] / TURN
+        return ca.horzcat(tilts, turns)
 
     @classmethod
     def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
