@@ -16,8 +16,11 @@ from kinematics.dynamics import (
     from_actuators,
     inverse_dynamics,
     joint_motion,
+    mass_matrix,
     member_forces,
+    platform_stiffness,
     to_actuators,
+    tool_stiffness,
     torques,
 )
 from kinematics.errors import (
@@ -42,7 +45,7 @@ from kinematics.evaluation import (
     run_through,
 )
 from kinematics.machine import UNIFORM, DriveTrain, FieldKind, GeometryRecord, InertiaRecord, JointRanges, kind_of
-from kinematics.margins import CLEARANCE, PASSIVE_JOINT, STANDARD
+from kinematics.margins import CLEARANCE, INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
 from kinematics.model import (
@@ -71,9 +74,11 @@ __all__ = [
     "ARCHITECTURES",
     "CLEARANCE",
     "CORES",
+    "INTERNAL_STIFFNESS",
     "LENGTHS",
     "MECHANISMS",
     "PASSIVE_JOINT",
+    "ROTATIONAL_STIFFNESS",
     "STANDARD",
     "UNIFORM",
     "Architecture",
@@ -136,17 +141,20 @@ __all__ = [
     "joint_motion",
     "kind_of",
     "loop_mobility",
+    "mass_matrix",
     "member_forces",
     "mjcf",
     "mobility_of_identical_chains",
     "over_spans",
     "plain",
+    "platform_stiffness",
     "positive",
     "rounded_down",
     "rounded_up",
     "run_through",
     "sides",
     "to_actuators",
+    "tool_stiffness",
     "torques",
     "whole",
 ]

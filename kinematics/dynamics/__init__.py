@@ -1,4 +1,4 @@
-"""Motion and torque of the joints and of the actuators."""
+"""Motion and torque of the joints and of the actuators; stiffness and mass at the tool."""
 
 from kinematics.dynamics.actuators import from_actuators, to_actuators
 from kinematics.dynamics.chain_rule import JointMotion, actuator_motion, derivatives_along, joint_motion
@@ -14,6 +14,16 @@ from kinematics.dynamics.frame_reaction import FrameReaction, frame_reaction
 from kinematics.dynamics.member_forces import MemberForces, member_forces
 from kinematics.dynamics.member_loads import MemberLoad, loads_at_rest, loads_in_motion
 from kinematics.dynamics.safety_factors import Size, WorstDirection, safety_factors
+from kinematics.dynamics.stiffness import (
+    Transmission,
+    mass_matrix,
+    mass_matrix_symbolic,
+    platform_stiffness,
+    stiffness_parts,
+    sum_of,
+    tool_stiffness,
+    transmission,
+)
 
 __all__ = [
     "GRAVITY",
@@ -22,6 +32,7 @@ __all__ = [
     "MemberForces",
     "MemberLoad",
     "Size",
+    "Transmission",
     "WorstDirection",
     "actuator_motion",
     "derivatives_along",
@@ -32,10 +43,17 @@ __all__ = [
     "joint_motion",
     "loads_at_rest",
     "loads_in_motion",
+    "mass_matrix",
+    "mass_matrix_symbolic",
     "member_forces",
     "moving_bodies",
+    "platform_stiffness",
     "require_payload",
     "safety_factors",
+    "stiffness_parts",
+    "sum_of",
     "to_actuators",
+    "tool_stiffness",
     "torques",
+    "transmission",
 ]

@@ -18,7 +18,7 @@ import casadi as ca
 from kinematics.coordinates import is_length
 from kinematics.dynamics.chain_rule import derivatives_along
 from kinematics.dynamics.drive_torque import GRAVITY
-from kinematics.dynamics.stiffness import Transmission, stiffness_matrix, transmission
+from kinematics.dynamics.stiffness import Transmission, stiffness_parts, sum_of, transmission
 from kinematics.machine import Bodies, Material, Member, Section, Tube
 from kinematics.model import Mechanism
 
@@ -211,7 +211,7 @@ def _shared(robot: Mechanism, whole: Transmission, load: ca.SX) -> ca.SX:
         return ca.solve(wrenches, load)
     if any(compliance[i, i].is_zero() for i in range(k)):  # rigid: the least norm
         return wrenches.T @ ca.solve(wrenches @ wrenches.T, load)
-    return ca.solve(compliance, wrenches.T @ ca.solve(stiffness_matrix(robot), load))
+    return ca.solve(compliance, wrenches.T @ ca.solve(sum_of(stiffness_parts(robot)), load))
 
 
 def _tube(member: Member) -> Tube:

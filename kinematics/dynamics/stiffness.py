@@ -12,11 +12,15 @@ from typing import NamedTuple
 import casadi as ca
 import numpy as np
 
-from kinematics.dynamics.drive_torque import moving_bodies
+from kinematics.arrays import Array, checked
+from kinematics.dynamics.drive_torque import moving_bodies, require_payload
 from kinematics.errors import InvalidValue
+from kinematics.evaluation import evaluate
 from kinematics.machine import Cut
 from kinematics.mathematics import adjugate
-from kinematics.model import Mechanism, Model
+from kinematics.model import Build, Mechanism, Model
+
+_REGULAR = 1e12  # a condition number that an inverse bears
 
 
 class Transmission(NamedTuple):
@@ -83,9 +87,59 @@ def stiffness_parts(robot: Mechanism) -> list[tuple[ca.SX, ca.SX]]:
     return parts
 
 
-def stiffness_matrix(robot: Mechanism) -> ca.SX:
-    """(f, f) at a pose, of all freedoms of the platform: the twist, then what the pose does not have."""
-    return sum_of(stiffness_parts(robot))
+def platform_stiffness(robot: Mechanism, pose: Array) -> Array:
+    """(..., n) -> (..., f, f) of all freedoms of the platform: the twist, then those that the pose does not have.
+
+    NaN where a limb cannot reach.
+
+    Raises:
+        InvalidValue: nothing gives way for some or for all of the transmitted forces.
+    """
+    return evaluate(robot.program(_platform_stiffness), checked(pose, "pose", robot.pose_names), blank=True)[0]
+
+
+def tool_stiffness(robot: Mechanism, pose: Array) -> Array:
+    """(..., n) -> (..., n, n) against forces and moments on the tool; what the pose does not have carries no load.
+
+    NaN where a limb cannot reach, or where the tool has no stiffness at all in some direction.
+
+    Raises:
+        InvalidValue: as for `platform_stiffness`.
+    """
+    whole, n = platform_stiffness(robot, pose), len(robot.pose_names)
+    good = np.isfinite(whole).all(axis=(-2, -1)) & (np.linalg.cond(np.where(np.isfinite(whole), whole, 0.0)) < _REGULAR)
+    result = np.full((*whole.shape[:-2], n, n), np.nan)
+    result[good] = np.linalg.inv(np.linalg.inv(whole[good])[..., :n, :n])
+    return result
+
+
+def mass_matrix(robot: Mechanism, payload: float, pose: Array) -> Array:
+    """(..., n) -> (..., n, n) of the twist, with the motors: the kinetic energy is t^T M t / 2. NaN out of reach.
+
+    Args:
+        robot: a robot.
+        payload: mass at the tool point [kg].
+        pose: (..., n).
+
+    Raises:
+        InvalidValue: the payload is no mass.
+    """
+    require_payload(payload)
+    poses = checked(pose, "pose", robot.pose_names)
+    return evaluate(robot.program(_mass_matrix), poses, np.full((*poses.shape[:-1], 1), payload), blank=True)[0]
+
+
+def _platform_stiffness(robot: Mechanism, model: Model) -> Build:
+    parts = stiffness_parts(robot)
+    if not parts:
+        raise InvalidValue(f"{type(robot).__name__} stiffness", "only rigid parts", "drives or members that give way")
+    return [model.pose], [sum_of(parts), ca.sum1(robot.limb_roots(model.pose, model.g))]
+
+
+def _mass_matrix(robot: Mechanism, model: Model) -> Build:
+    payload = ca.SX.sym("payload")
+    mass = ca.densify(mass_matrix_symbolic(robot, payload))
+    return [model.pose, payload], [mass, ca.sum1(robot.limb_roots(model.pose, model.g))]
 
 
 def sum_of(parts: list[tuple[ca.SX, ca.SX]]) -> ca.SX:
@@ -100,7 +154,7 @@ def sum_of(parts: list[tuple[ca.SX, ca.SX]]) -> ca.SX:
     return ca.tril2symm(result)
 
 
-def mass_matrix(robot: Mechanism, payload: float | ca.SX) -> ca.SX:
+def mass_matrix_symbolic(robot: Mechanism, payload: float | ca.SX) -> ca.SX:
     """(n, n) of the twist at a pose: twice the kinetic energy of all bodies, motors too, is t^T M t."""
     model = robot.model()
     bodies, by_twist = moving_bodies(robot, model, payload), robot.pose_rate_map(model.pose)

@@ -5,10 +5,12 @@ from kinematics.margins.condition import INVERSE_CONDITION_NUMBER
 from kinematics.margins.force_capability import FORCE_CAPABILITY
 from kinematics.margins.isotropic import F_W, FVI, V_W
 from kinematics.margins.joint_travel import JOINT_TRAVEL
+from kinematics.margins.natural_frequency import NATURAL_FREQUENCY
 from kinematics.margins.parallel import DET_J_X
 from kinematics.margins.passive_joint import PASSIVE_JOINT
 from kinematics.margins.reach import REACH
 from kinematics.margins.serial import DET_J_Q, J_Q
+from kinematics.margins.stiffness import INTERNAL_STIFFNESS, ROTATIONAL_STIFFNESS, STIFFNESS
 from kinematics.margins.strength import STRENGTH
 
 # What every mechanism has.
@@ -25,6 +27,8 @@ STANDARD = (
     DET_J_Q,
     DET_J_X,
     STRENGTH,
+    STIFFNESS,
+    NATURAL_FREQUENCY,
 )
 
-__all__ = ["CLEARANCE", "PASSIVE_JOINT", "STANDARD"]
+__all__ = ["CLEARANCE", "INTERNAL_STIFFNESS", "PASSIVE_JOINT", "ROTATIONAL_STIFFNESS", "STANDARD"]

@@ -13,7 +13,7 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import Bodies, GeometryRecord, Member, Particle, angle, length, platform
-from kinematics.margins import PASSIVE_JOINT, STANDARD
+from kinematics.margins import INTERNAL_STIFFNESS, PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import determinant, not_below_zero
 from kinematics.model import Build, FviBounds, Model, by_name
 from kinematics.robots.shared import (
@@ -87,7 +87,7 @@ class Delta(PairedArms):
     joint_units = ("rad",) * 3
     rotations = ()
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
-    margins = by_name(*STANDARD, INTERNAL_DETERMINANT, PASSIVE_JOINT)
+    margins = by_name(*STANDARD, INTERNAL_DETERMINANT, INTERNAL_STIFFNESS, PASSIVE_JOINT)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "omega_z")
     row_combinations = means_and_differences(3)
     column_combinations = np.eye(6)

@@ -15,7 +15,7 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import TURN, Bodies, GeometryRecord, Member, angle, length
-from kinematics.margins import PASSIVE_JOINT, STANDARD
+from kinematics.margins import PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.model import Build, FviBounds, Model, by_name
 from kinematics.robots.gough_stewart import (
     GoughStewart,
@@ -107,7 +107,7 @@ class Hexa(SixLegs, RotaryLimbs):
     inertia: HexaInertia
     joint_units = ("rad",) * 6
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=1.0, force=50.0)
-    margins = by_name(*STANDARD, PASSIVE_JOINT)
+    margins = by_name(*STANDARD, ROTATIONAL_STIFFNESS, PASSIVE_JOINT)
 
     @staticmethod
     def default_home(geometry: HexaGeometry) -> tuple[float, ...]:

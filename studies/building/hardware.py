@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import Field, fields
+from dataclasses import Field, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,8 +28,9 @@ _JOINTS: dict[tuple[str, ...], Dimension] = {("m",): Dimension.LENGTH, ("rad",):
 def inertia_of(study: Study) -> InertiaRecord:
     """The mechanism's masses; those that the study sets replace the mechanism's own."""
     masses: dict[str, Any] = dict(study.inertia.masses)
-    drive_train = DriveTrain(**study.inertia.drive_train.model_dump(exclude_none=True))
-    return study.mechanism_class.Inertia(**masses, drive_train=drive_train)
+    usual = study.mechanism_class.Inertia()
+    drive_train = replace(usual.drive_train, **study.inertia.drive_train.model_dump(exclude_none=True))
+    return replace(usual, **masses, drive_train=drive_train)
 
 
 def ranges_of(study: Study) -> JointRanges:

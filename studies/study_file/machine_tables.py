@@ -13,7 +13,7 @@ Ranges = dict[str, Numbers | tuple[tuple[float, float], ...]]
 
 
 class DriveTrainTable(StudyTable):
-    """The gear, motor and friction of each actuator, as in `kinematics.DriveTrain`; None takes its default."""
+    """Of each actuator, as in `kinematics.DriveTrain`; None takes the mechanism's own value."""
 
     gear_ratio: Annotated[
         Numbers | None, Key("a number > 0, or one a joint (rad of the motor for one rad, or one m, of the joint)")
@@ -25,6 +25,8 @@ class DriveTrainTable(StudyTable):
     """The dry friction at the joint."""
     viscous: Annotated[Numbers | None, Key("a number >= 0, or one a joint (N m s/rad, or N s/m)")] = None
     """The friction at the joint for each unit of speed. The law `toppra` does not allow it."""
+    stiffness: Annotated[Numbers | None, Key("a number > 0, or one a joint (N m/rad, or N/m)")] = None
+    """How hard gear and servo loop resist at the joint."""
 
 
 class InertiaTable(StudyTable):
@@ -33,7 +35,7 @@ class InertiaTable(StudyTable):
     masses: dict[str, Numbers] = Field(default_factory=dict)
     """The fields of the mechanism's `Inertia` [SI]."""
     drive_train: Annotated[DriveTrainTable, table_of(DriveTrainTable)] = DriveTrainTable()
-    """The gear, motor and friction of each actuator."""
+    """The gear, motor, friction and stiffness of each actuator."""
 
     @model_validator(mode="before")
     @classmethod

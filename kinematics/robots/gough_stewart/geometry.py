@@ -7,14 +7,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar, Self
 
 import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.errors import InvalidField, InvalidGeometry, InvalidValue
-from kinematics.machine import TURN, GeometryRecord, InertiaRecord, Pair, Points, RodRanges, frame, length, numbers_of
+from kinematics.machine import (
+    TURN,
+    DriveTrain,
+    GeometryRecord,
+    InertiaRecord,
+    Pair,
+    Points,
+    RodRanges,
+    frame,
+    length,
+    numbers_of,
+)
 from kinematics.robots.gough_stewart.architecture_singularity import why_singular
 
 _DEG = math.pi / 180.0
@@ -151,6 +162,7 @@ class GoughStewartInertia(InertiaRecord):
         rod_mass, rod_length: the moving end of each leg, a thin uniform rod from B_i towards A_i; of length 0, a
             particle at B_i. The other end stays near A_i, and its turning is left out.
         platform_mass: in six equal particles at the B_i; the payload is a particle at the tool point.
+        drive_train: screw, bearings and servo loop of each cylinder give way by 0.02 um for each N.
     """
 
     dimensions: ClassVar[Mapping[str, str]] = {"screw_lead": "length_per_turn", "rod_length": "length"}
@@ -159,6 +171,7 @@ class GoughStewartInertia(InertiaRecord):
     rod_mass: float = 0.8
     rod_length: float = 0.0
     platform_mass: float = 12.0
+    drive_train: DriveTrain = field(default=DriveTrain(stiffness=5e7), kw_only=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()

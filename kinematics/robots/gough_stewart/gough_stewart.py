@@ -16,7 +16,7 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.errors import InvalidShape
 from kinematics.machine import TURN, Bodies, LimbStatics, Member, Particle, PassiveJoint, Rotor, Tube, shared_joints
-from kinematics.margins import PASSIVE_JOINT, STANDARD
+from kinematics.margins import PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.model import FviBounds, Mechanism, Mode, Model, by_name
 from kinematics.robots.gough_stewart.forward import ForwardSolution, assembly_modes, matched_pose
 from kinematics.robots.gough_stewart.geometry import GoughStewartGeometry, GoughStewartInertia, GoughStewartRanges
@@ -41,7 +41,7 @@ class GoughStewart(SixLegs):
     ranges: GoughStewartRanges
     joint_units = ("m",) * 6
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=2000.0, speed=0.3, force=500.0)
-    margins = by_name(*STANDARD, PASSIVE_JOINT)
+    margins = by_name(*STANDARD, ROTATIONAL_STIFFNESS, PASSIVE_JOINT)
 
     @staticmethod
     def default_home(geometry: GoughStewartGeometry) -> tuple[float, ...]:

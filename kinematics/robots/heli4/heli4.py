@@ -15,7 +15,7 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import TURN, Member, Tube
-from kinematics.margins import PASSIVE_JOINT, STANDARD
+from kinematics.margins import INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.mathematics import gaps, real_roots, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, in_aspect, joined_to_home, polished
 from kinematics.robots.heli4.bodies import Heli4Inertia, bodies
@@ -56,7 +56,7 @@ class Heli4(PairedArms):
     rotations = (3,)
     counts_turns = True
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=150.0)
-    margins = by_name(*STANDARD, INTERNAL_DETERMINANT, PASSIVE_JOINT)
+    margins = by_name(*STANDARD, ROTATIONAL_STIFFNESS, INTERNAL_DETERMINANT, INTERNAL_STIFFNESS, PASSIVE_JOINT)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta", "epsilon_1", "epsilon_2")
     # (51): sums and differences of a limb's two rods; the plates' own rotations instead of the relative ones.
     row_combinations = means_and_differences(4)

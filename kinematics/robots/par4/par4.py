@@ -18,7 +18,7 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import AXES, TURN, Bodies, Member, Particle, Rotor, Tube, angle, bar, length, ratio
-from kinematics.margins import PASSIVE_JOINT, STANDARD
+from kinematics.margins import INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.mathematics import determinant, distinct, volume, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, joined_to_home, polished
 from kinematics.robots.par4.forward import Halves, candidates
@@ -104,7 +104,9 @@ class Par4(PairedArms):
     rotations = (3,)
     counts_turns = True  # of the bars, by the gear
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
-    margins = by_name(*STANDARD, PI_JOINT, INTERNAL_DETERMINANT, PASSIVE_JOINT)
+    margins = by_name(
+        *STANDARD, ROTATIONAL_STIFFNESS, PI_JOINT, INTERNAL_DETERMINANT, INTERNAL_STIFFNESS, PASSIVE_JOINT
+    )
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "omega_z", "theta")
     row_combinations = means_and_differences(4)
     column_combinations = np.eye(7)[:, [0, 1, 2, 6, 3, 4, 5]]

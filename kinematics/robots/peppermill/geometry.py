@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from kinematics.machine import GeometryRecord, InertiaRecord, Pair, RodRanges, length, screw_pitch
+from kinematics.machine import DriveTrain, GeometryRecord, InertiaRecord, Pair, RodRanges, length, screw_pitch
 
 # Share of the larger pitch. Rounding of a nut's height [m] changes theta by 2 pi / |p_1 - p_2| times as much [rad]. At
 # this difference of pitches theta is known to about 1e-8 rad; at 1e-11 only to 1e-3.
@@ -53,6 +53,7 @@ class PeppermillInertia(InertiaRecord):
         nut_mass: mass of each nut of the platform's screws.
         platform_mass, tool: mass of the platform with screws and tool, and its inertia about e_z; the payload is a
             point at C.
+        drive_train: the servo loop of each motor gives way by 5e-4 rad for each N m.
     """
 
     motor: float = 3.0e-4
@@ -65,6 +66,7 @@ class PeppermillInertia(InertiaRecord):
     nut_mass: float = 0.2
     platform_mass: float = 0.8
     tool: float = 6.0e-4
+    drive_train: DriveTrain = field(default=DriveTrain(stiffness=2e3), kw_only=True)
 
 
 @dataclass(frozen=True)

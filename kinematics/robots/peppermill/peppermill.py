@@ -31,7 +31,7 @@ from kinematics.machine import (
     Tube,
     bar,
 )
-from kinematics.margins import PASSIVE_JOINT, STANDARD
+from kinematics.margins import INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.model import Build, FviBounds, Mechanism, Mode, Model, by_name
 from kinematics.robots.peppermill import limbs
 from kinematics.robots.peppermill.geometry import PeppermillGeometry, PeppermillInertia, PeppermillRanges
@@ -61,7 +61,7 @@ class Peppermill(Mechanism):
     counts_turns = True
     # 750 W servos at 3000 rpm and three times their rated torque; 2.5 m/s and 50 N are wanted. All are our assumptions.
     fvi_bounds = FviBounds(joint_speed=314.0, joint_effort=7.2, speed=2.5, force=50.0)
-    margins = by_name(*STANDARD, PASSIVE_JOINT)
+    margins = by_name(*STANDARD, ROTATIONAL_STIFFNESS, INTERNAL_STIFFNESS, PASSIVE_JOINT)
 
     @property
     def characteristic_length(self) -> float:

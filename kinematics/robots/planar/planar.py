@@ -7,7 +7,7 @@ Pose [x, y, theta]. Given the joints, all three are the same problem: three plat
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import casadi as ca
@@ -18,6 +18,7 @@ from kinematics.evaluation import evaluate
 from kinematics.machine import (
     TURN,
     Bodies,
+    DriveTrain,
     GeometryRecord,
     InertiaRecord,
     LimbStatics,
@@ -29,7 +30,7 @@ from kinematics.machine import (
     platform,
     shared_joints,
 )
-from kinematics.margins import STANDARD
+from kinematics.margins import ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.mathematics import distinct
 from kinematics.model import Build, Mechanism, Model, by_name, joined_to_home
 from kinematics.robots.planar.forward import placements, rods_and_determinant
@@ -91,11 +92,13 @@ class PlanarInertia(InertiaRecord):
         drive: a prismatic drive's moving inertia as seen at its joint [kg].
         link_mass: mass of each leg's link; if the link changes its length, half is at each end.
         platform_mass: three equal particles at the B_i; the payload is a particle at the tool point.
+        drive_train: screw, bearings and servo loop give way by 0.5 um for each N.
     """
 
     drive: float = 1.0
     link_mass: float = 0.3
     platform_mass: float = 1.2
+    drive_train: DriveTrain = field(default=DriveTrain(stiffness=2e6), kw_only=True)
 
 
 class Planar(Mechanism):
@@ -106,7 +109,7 @@ class Planar(Mechanism):
     pose_names = ("x", "y", "theta")
     joint_names = ("q1", "q2", "q3")
     rotations = (2,)
-    margins = by_name(*STANDARD)
+    margins = by_name(*STANDARD, ROTATIONAL_STIFFNESS)
 
     @property
     def characteristic_length(self) -> float:

@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.machine import Bodies, GeometryRecord, JointRanges, Member, Pair, angle, length, shared_joints
+from kinematics.machine import (
+    Bodies,
+    DriveTrain,
+    GeometryRecord,
+    JointRanges,
+    Member,
+    Pair,
+    angle,
+    length,
+    shared_joints,
+)
 from kinematics.model import FviBounds
 from kinematics.robots.planar.planar import AZIMUTHS, Planar, PlanarGeometry, PlanarInertia
 from kinematics.robots.shared import Limbs, RotaryLimbs, arms_and_rods, radial_directions
@@ -35,12 +45,14 @@ class Planar3RRRInertia(PlanarInertia):
     Attributes:
         arm_mass, arm_centre, arm_factor: the arm's mass, its centre of mass c as a fraction of L_i, and its inertia
             about the joint over m c^2.
+        drive_train: gear and servo loop give way by 1e-4 rad for each N m.
     """
 
     drive: float = 0.005
     arm_mass: float = 0.4
     arm_centre: float = 0.5
     arm_factor: float = 4 / 3
+    drive_train: DriveTrain = field(default=DriveTrain(stiffness=1e4), kw_only=True)
 
 
 @dataclass(frozen=True)

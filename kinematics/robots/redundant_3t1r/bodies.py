@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from kinematics.machine import AXES, Bodies, InertiaRecord, Particle, Rod, Rotor
+from kinematics.machine import AXES, Bodies, DriveTrain, InertiaRecord, Particle, Rod, Rotor
 from kinematics.robots.redundant_3t1r.geometry import LIMBS, PARALLELOGRAMS
 
 if TYPE_CHECKING:
@@ -24,12 +24,14 @@ class Redundant3T1RInertia(InertiaRecord):
         rod_mass: one rod; arms 3 and 4 have two.
         platform_mass: at the tool centre point P, where the payload sits too.
         platform_inertia: of the platform about e_z through P.
+        drive_train: the servo loop of each linear motor gives way by 0.1 um for each N.
     """
 
     slide_mass: float = 5.0
     rod_mass: float = 0.9
     platform_mass: float = 3.0
     platform_inertia: float = 0.015
+    drive_train: DriveTrain = field(default=DriveTrain(stiffness=1e7), kw_only=True)
 
 
 def bodies(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:

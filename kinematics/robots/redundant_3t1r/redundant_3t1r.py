@@ -19,7 +19,7 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import PassiveJoint
-from kinematics.margins import PASSIVE_JOINT, STANDARD
+from kinematics.margins import INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.model import (
     BestFit,
     EncoderCheck,
@@ -66,7 +66,7 @@ class Redundant3T1R(RodLevel):
     joint_names = ("x1", "x2", "x3", "x4", "x5", "x6")
     joint_units = ("m",) * LIMBS
     rotations = (3,)
-    margins = by_name(*STANDARD, INTERNAL_DETERMINANT, PASSIVE_JOINT)
+    margins = by_name(*STANDARD, ROTATIONAL_STIFFNESS, INTERNAL_DETERMINANT, INTERNAL_STIFFNESS, PASSIVE_JOINT)
     mirrors = (("y", "theta"), ("z",))
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=1.0, speed=0.5, force=0.5)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta")

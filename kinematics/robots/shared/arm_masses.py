@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import casadi as ca
 
-from kinematics.machine import Bodies, InertiaRecord, Particle, Rod, Rotor
+from kinematics.machine import Bodies, DriveTrain, InertiaRecord, Particle, Rod, Rotor
 from kinematics.robots.shared.rotary_limbs import RotaryLimbs
 
 
@@ -21,6 +21,7 @@ class ArmInertia(InertiaRecord):
         arm_mass, arm_centre, arm_factor: the arm's mass, its centre of mass c as a fraction of L, and its inertia about
             the joint over m c^2.
         rod_mass: mass of the one or two rods between an arm and the platform.
+        drive_train: gear and servo loop give way by 1e-5 rad for each N m.
     """
 
     drive: float = 0.045
@@ -28,6 +29,7 @@ class ArmInertia(InertiaRecord):
     arm_centre: float = 0.40
     arm_factor: float = 1.25
     rod_mass: float = 0.26
+    drive_train: DriveTrain = field(default=DriveTrain(stiffness=1e5), kw_only=True)
 
 
 def arms_and_rods(

@@ -36,4 +36,5 @@ class PairedArms(RodLevel, RotaryLimbs):
         model = self.model()
         rods, axes = model.at_pose(self.rods(model.pose, model.joints, model.g)), self.limbs(model.g).axes()
         normals = [ca.cross(axes[:, i], rods[:, i]) / model.g.rod_length for i in range(rods.shape[1])]
-        return ca.horzcat(*normals)
+        result: ca.SX = ca.horzcat(*normals)
+        return result

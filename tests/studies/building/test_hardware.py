@@ -44,7 +44,7 @@ joints_deg = [0, 200]
 passive_deg = [50, 45]
 """
 GIVEN = re.sub(r"\[optimise\].*?(?=\[\[requirement)", "", SMALL, flags=re.DOTALL)
-DRIVES = DriveTrain(gear_ratio=5.0, motor_inertia=1e-4, coulomb=(1.0, 1.0, 2.0, 2.0))
+DRIVES = DriveTrain(gear_ratio=5.0, motor_inertia=1e-4, coulomb=(1.0, 1.0, 2.0, 2.0), stiffness=1e5)
 INERTIA = Heli4.Inertia(arm_mass=1.1, plate_masses=(0.5, 0.6), rod_middle=2 / 3, drive_train=DRIVES)
 RANGES = Heli4.Ranges(joints=(0.0, math.radians(200)), passive=(math.radians(50), math.radians(45)))
 
@@ -59,7 +59,9 @@ def study_of(folder: Path, text: str) -> Study:
     return load_study(read_toml(folder / "study.toml"))
 
 
-def test_a_robot_has_its_studys_masses_drives_and_ranges(tmp_path: Path) -> None:
+def test_a_robot_has_its_studys_masses_drives_and_ranges_and_else_its_own(
+    tmp_path: Path,
+) -> None:
     robot = robot_of(study_of(tmp_path, SMALL + HARDWARE))
     assert (robot.inertia, robot.ranges) == (INERTIA, RANGES)
     plain = robot_of(study_of(tmp_path, SMALL))
