@@ -12,7 +12,7 @@ from kinematics.dynamics.drive_torque import (
 )
 from kinematics.dynamics.frame_reaction import FrameReaction, frame_reaction
 from kinematics.dynamics.member_forces import MemberForces, member_forces
-from kinematics.dynamics.member_loads import MemberLoad, loads_at_rest, loads_in_motion
+from kinematics.dynamics.member_loads import LoadCase, MemberLoad, case_at_rest, case_in_motion
 from kinematics.dynamics.safety_factors import Size, WorstDirection, safety_factors
 from kinematics.dynamics.stiffness import (
     Transmission,
@@ -29,20 +29,21 @@ __all__ = [
     "GRAVITY",
     "FrameReaction",
     "JointMotion",
+    "LoadCase",
     "MemberForces",
     "MemberLoad",
     "Size",
     "Transmission",
     "WorstDirection",
     "actuator_motion",
+    "case_at_rest",
+    "case_in_motion",
     "derivatives_along",
     "frame_reaction",
     "friction",
     "from_actuators",
     "inverse_dynamics",
     "joint_motion",
-    "loads_at_rest",
-    "loads_in_motion",
     "mass_matrix",
     "mass_matrix_symbolic",
     "member_forces",

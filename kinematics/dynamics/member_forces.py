@@ -10,7 +10,7 @@ import numpy as np
 
 from kinematics.arrays import Array, checked
 from kinematics.dynamics.drive_torque import require_payload
-from kinematics.dynamics.member_loads import loads_in_motion
+from kinematics.dynamics.member_loads import case_in_motion
 from kinematics.dynamics.safety_factors import Size, bending_of, safety_factors
 from kinematics.dynamics.stiffness import transmission
 from kinematics.evaluation import evaluate
@@ -73,7 +73,8 @@ def _of_cuts(robot: Mechanism, model: Model) -> Build:
     velocity, acceleration = (ca.SX.sym(name, model.pose.numel()) for name in ("velocity", "acceleration"))
     payload, size = ca.SX.sym("payload"), Size()
     rows = []
-    for load in loads_in_motion(robot, payload, velocity, acceleration):
+    case = case_in_motion(robot, payload, velocity, acceleration)
+    for load in case.loads(case.shared()):
         tension, *others = load.tensions()
         for other in others:
             tension = ca.if_else(ca.fabs(tension) >= ca.fabs(other), tension, other)

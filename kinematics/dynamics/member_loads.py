@@ -18,8 +18,8 @@ import casadi as ca
 from kinematics.coordinates import is_length
 from kinematics.dynamics.chain_rule import derivatives_along
 from kinematics.dynamics.drive_torque import GRAVITY
-from kinematics.dynamics.stiffness import Transmission, stiffness_parts, sum_of, transmission
-from kinematics.machine import Bodies, Material, Member, Section, Tube
+from kinematics.dynamics.stiffness import transmission
+from kinematics.machine import Bodies, Cut, Material, Member, Section, Tube
 from kinematics.model import Mechanism
 
 _E_Z = ca.DM([0, 0, 1])
@@ -43,7 +43,7 @@ class MemberLoad(NamedTuple):
     along: ca.SX
     force: ca.SX
     moment: ca.SX
-    ends: tuple[ca.SX, ...]
+    ends: tuple[ca.SX, ...] = ()
 
     @property
     def length(self) -> ca.SX:
@@ -73,18 +73,54 @@ class MemberLoad(NamedTuple):
         return [self.along.T @ force for force in self.joint_forces()]
 
 
-def loads_in_motion(robot: Mechanism, payload: float | ca.SX, velocity: ca.SX, acceleration: ca.SX) -> list[MemberLoad]:
-    """Of each cut of the robot's statics, in one column, in the model's symbols `pose` and `geometry`.
+class LoadCase(NamedTuple):
+    """What the platform needs, and what passes it on; in the model's symbols `pose` and `geometry`.
+
+    A limb's two rods count by their mean force and by half of their difference, which keeps W sparse.
+
+    Attributes:
+        wrenches: W (f, k) of the transmitted forces.
+        compliance: C (k, k).
+        needed: Q (f, c) on the platform's freedoms.
+        cuts: what each cut bears of the transmitted forces.
+        bearers: the member of each cut, with what its own mass needs in place of its load.
+    """
+
+    wrenches: ca.SX
+    compliance: ca.SX
+    needed: ca.SX
+    cuts: list[Cut]
+    bearers: list[MemberLoad]
+
+    def shared(self) -> ca.SX:
+        """(k, c) the transmitted forces."""
+        f, k = self.wrenches.shape
+        if f == k:
+            return ca.solve(self.wrenches, self.needed)
+        rigid = any(self.compliance[i, i].is_zero() for i in range(k))  # then the least norm
+        giving = self.wrenches.T if rigid else ca.solve(self.compliance, self.wrenches.T)
+        return giving @ ca.solve(self.wrenches @ giving, self.needed)
+
+    def loads(self, transmitted: ca.SX) -> list[MemberLoad]:
+        """The load of each cut under transmitted forces (k, c)."""
+        return [
+            own._replace(force=cut.force @ transmitted + own.force, moment=cut.moment @ transmitted + own.moment)
+            for cut, own in zip(self.cuts, self.bearers, strict=True)
+        ]
+
+
+def case_in_motion(robot: Mechanism, payload: float | ca.SX, velocity: ca.SX, acceleration: ca.SX) -> LoadCase:
+    """In one column.
 
     Args:
         robot: any mechanism; without the hook `statics` it has no cuts.
         payload: mass at the tool [kg].
         velocity, acceleration: (n,) symbols of the pose's time derivatives.
     """
-    return _loads(robot, payload, velocity, acceleration, lambda vector: vector)
+    return _case(robot, payload, velocity, acceleration, lambda vector: vector)
 
 
-def loads_at_rest(robot: Mechanism) -> list[MemberLoad]:
+def case_at_rest(robot: Mechanism) -> LoadCase:
     """Of the robot at rest with its own `load.payload`.
 
     The columns are those for an acceleration of 1 m/s^2 of the tool point along each axis in turn, without weights;
@@ -99,41 +135,43 @@ def loads_at_rest(robot: Mechanism) -> list[MemberLoad]:
         weights = ca.substitute(still, acceleration, ca.SX.zeros(n))
         return ca.horzcat(ca.jacobian(still, acceleration)[:, axes], weights)
 
-    return _loads(robot, robot.load.payload, velocity, acceleration, columns)
+    return _case(robot, robot.load.payload, velocity, acceleration, columns)
 
 
-def _loads(
+def _case(
     robot: Mechanism,
     payload: float | ca.SX,
     velocity: ca.SX,
     acceleration: ca.SX,
     columns: Callable[[ca.SX], ca.SX],
-) -> list[MemberLoad]:
+) -> LoadCase:
     """`columns` makes matrices (r, c) of vectors (r,) that are linear in accelerations and weights."""
     model, felt = robot.model(), _Felt(robot, velocity, acceleration)
     bodies = robot.bodies(model.pose, model.joints, model.g, payload)
     members = {member.name: member for member in robot.members(model.pose, model.joints, model.g)}
-    whole = transmission(robot)
-    load = columns(felt.at_pose(_load_on_freedoms(robot, bodies, felt, whole.wrenches.shape[0])))
-    transmitted, found = _shared(robot, whole, load), []
+    whole, pairs = transmission(robot), _means_and_differences(robot)
+    needed = columns(felt.at_pose(_load_on_freedoms(robot, bodies, felt, whole.wrenches.shape[0])))
+    cuts, bearers = [], []
     for cut in whole.cuts:
         member, rod = members[cut.member], cut.moment.nnz() == 0
         tube, material = _tube(member), getattr(robot.structure, member.material)
-        if rod:
-            own = ca.vertcat(felt(tube.start), felt(tube.end))
-        else:
-            own = _own(member, tube, material, cut.along, bodies, felt)
-        own = columns(felt.at_pose(own))
-        first, second = own[:3, :], own[3:, :]
-        along, force, moment, start, end = (
-            model.at_pose(part) for part in (cut.along, cut.force, cut.moment, tube.start, tube.end)
-        )
-        force, moment, tube = force @ transmitted, moment @ transmitted, tube._replace(start=start, end=end)
-        if rod:
-            found.append(MemberLoad(member.name, tube, material, along, force, moment, (first, second)))
-        else:
-            found.append(MemberLoad(member.name, tube, material, along, force + first, moment + second, ()))
-    return found
+        mass = [felt(tube.start), felt(tube.end)] if rod else _own(member, tube, material, cut.along, bodies, felt)
+        first, second = (columns(felt.at_pose(part)) for part in mass)
+        none = ca.SX(*first.shape)
+        own = {"force": none, "moment": none, "ends": (first, second)} if rod else {"force": first, "moment": second}
+        along, start, end = (model.at_pose(part) for part in (cut.along, tube.start, tube.end))
+        bearers.append(MemberLoad(member.name, tube._replace(start=start, end=end), material, along, **own))
+        force, moment = (model.at_pose(part @ pairs) for part in (cut.force, cut.moment))
+        cuts.append(Cut(member.name, along, force, moment))
+    compliance = ca.sparsify(model.at_pose(pairs.T @ whole.compliance @ pairs))
+    return LoadCase(ca.sparsify(model.at_pose(whole.wrenches @ pairs)), compliance, needed, cuts, bearers)
+
+
+def _means_and_differences(robot: Mechanism) -> ca.DM:
+    """(k, k) the transmitted forces from the mean and half the difference of a limb that transmits two, else 1."""
+    model = robot.model()
+    counts = [limb.wrenches.shape[1] for limb in robot.statics(model.pose, model.joints, model.g)]
+    return ca.diagcat(*(ca.DM([[1, 1], [1, -1]]) if count == 2 else ca.DM.eye(count) for count in counts))
 
 
 class _Felt:
@@ -186,8 +224,10 @@ def _load_on_freedoms(robot: Mechanism, bodies: Bodies, felt: _Felt, count: int)
     return result
 
 
-def _own(member: Member, tube: Tube, material: Material, along: ca.SX, bodies: Bodies, felt: _Felt) -> ca.SX:
-    """(6,) force and moment that the masses of an arm, and of the rods' ends on it, exert on its root."""
+def _own(
+    member: Member, tube: Tube, material: Material, along: ca.SX, bodies: Bodies, felt: _Felt
+) -> tuple[ca.SX, ca.SX]:
+    """Force (3,) and moment (3,) that the masses of an arm, and of the rods' ends on it, exert on its root."""
     root, tip = felt(tube.start), felt(tube.end)
     length, per_length = ca.norm_2(tube.end - tube.start), material.density * Section.of(tube).area
     force = -per_length * length / 2 * (root + tip)
@@ -198,20 +238,7 @@ def _own(member: Member, tube: Tube, material: Material, along: ca.SX, bodies: B
             near, middle, far = bodies.rod_particles(k)
             end = (near, far)[rod.links.index(member.name)]
             hung -= end.mass * felt(end.point) + middle.mass / 2 * felt(middle.point)
-    result: ca.SX = ca.vertcat(force + hung, ca.cross(along, lever + length * hung))
-    return result
-
-
-def _shared(robot: Mechanism, whole: Transmission, load: ca.SX) -> ca.SX:
-    """(k, c) the transmitted forces that bear a load (f, c)."""
-    model = robot.model()
-    wrenches, compliance = model.at_pose(whole.wrenches), model.at_pose(whole.compliance)
-    f, k = wrenches.shape
-    if f == k:
-        return ca.solve(wrenches, load)
-    if any(compliance[i, i].is_zero() for i in range(k)):  # rigid: the least norm
-        return wrenches.T @ ca.solve(wrenches @ wrenches.T, load)
-    return ca.solve(compliance, wrenches.T @ ca.solve(sum_of(stiffness_parts(robot)), load))
+    return force + hung, ca.cross(along, lever + length * hung)
 
 
 def _tube(member: Member) -> Tube:

@@ -6,7 +6,7 @@ import math
 
 import casadi as ca
 
-from kinematics.dynamics import WorstDirection, loads_at_rest, safety_factors
+from kinematics.dynamics import WorstDirection, case_at_rest, safety_factors
 from kinematics.model import Margin, Measure, Mechanism
 
 
@@ -23,13 +23,14 @@ class Strength(Margin):
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
         """Of each rod, buckling and yield; of each cut of an arm, yield."""
         size = WorstDirection(robot.load.acceleration)
-        factors = [f for load in loads_at_rest(robot) for f in safety_factors(load, size).values()]
+        case = case_at_rest(robot)
+        factors = [f for load in case.loads(case.shared()) for f in safety_factors(load, size).values()]
         return ca.vertcat(*factors) if factors else ca.SX(math.inf)
 
     def places(self, robot: Mechanism) -> list[str]:
         """The member of each component, and by what it fails."""
         size = WorstDirection(robot.load.acceleration)
-        return [f"{load.member}, {what}" for load in loads_at_rest(robot) for what in safety_factors(load, size)]
+        return [f"{own.member}, {what}" for own in case_at_rest(robot).bearers for what in safety_factors(own, size)]
 
 
 STRENGTH = Strength()

@@ -21,7 +21,7 @@ from kinematics import (
     frame_reaction,
     inverse_dynamics,
 )
-from kinematics.dynamics import loads_in_motion
+from kinematics.dynamics import case_in_motion
 from tests.kinematics.by_hand import OBLIQUE, ByHand
 from tests.kinematics.numeric import slope
 
@@ -42,7 +42,8 @@ def numbers(robot, t, write):
     """Of expressions `write(loads)` in a motion."""
     model = robot.model()
     velocity, acceleration = (ca.SX.sym(name, model.pose.numel()) for name in ("v", "a"))
-    outputs = write(loads_in_motion(robot, PAYLOAD, velocity, acceleration))
+    case = case_in_motion(robot, PAYLOAD, velocity, acceleration)
+    outputs = write(case.loads(case.shared()))
     function = ca.Function("loads", [model.pose, velocity, acceleration, model.geometry], outputs)
     return [np.array(v) for v in function.call([*map(ca.DM, swinging(robot, t)), ca.DM(robot.geometry.vector())])]
 
