@@ -149,7 +149,8 @@ def _case(
     model, felt = robot.model(), _Felt(robot, velocity, acceleration)
     bodies = robot.bodies(model.pose, model.joints, model.g, payload)
     members = {member.name: member for member in robot.members(model.pose, model.joints, model.g)}
-    whole, pairs = transmission(robot), _means_and_differences(robot)
+    whole, width = transmission(robot), getattr(model.g, "parallelogram_width", None)
+    counts = [limb.wrenches.shape[1] for limb in robot.statics(model.pose, model.joints, model.g)]
     needed = columns(felt.at_pose(_load_on_freedoms(robot, bodies, felt, whole.wrenches.shape[0])))
     cuts, bearers = [], []
     for cut in whole.cuts:
@@ -161,17 +162,41 @@ def _case(
         own = {"force": none, "moment": none, "ends": (first, second)} if rod else {"force": first, "moment": second}
         along, start, end = (model.at_pose(part) for part in (cut.along, tube.start, tube.end))
         bearers.append(MemberLoad(member.name, tube._replace(start=start, end=end), material, along, **own))
-        force, moment = (model.at_pose(part @ pairs) for part in (cut.force, cut.moment))
+        force, moment = (
+            model.at_pose(_by_pairs(part, counts, None if rod else width)) for part in (cut.force, cut.moment)
+        )
         cuts.append(Cut(member.name, along, force, moment))
-    compliance = ca.sparsify(model.at_pose(pairs.T @ whole.compliance @ pairs))
-    return LoadCase(ca.sparsify(model.at_pose(whole.wrenches @ pairs)), compliance, needed, cuts, bearers)
+    compliance, wrenches = (
+        _by_pairs(_by_pairs(whole.compliance, counts).T, counts),
+        _by_pairs(whole.wrenches, counts, width),
+    )
+    wrenches, compliance = (ca.sparsify(model.at_pose(v)) for v in (wrenches, compliance))
+    return LoadCase(wrenches, compliance, needed, cuts, bearers)
 
 
-def _means_and_differences(robot: Mechanism) -> ca.DM:
-    """(k, k) the transmitted forces from the mean and half the difference of a limb that transmits two, else 1."""
-    model = robot.model()
-    counts = [limb.wrenches.shape[1] for limb in robot.statics(model.pose, model.joints, model.g)]
-    return ca.diagcat(*(ca.DM([[1, 1], [1, -1]]) if count == 2 else ca.DM.eye(count) for count in counts))
+def _by_pairs(matrix: ca.SX, counts: list[int], width: ca.SX | None = None) -> ca.SX:
+    """(r, k) columns of single transmitted forces -> of the mean and half the difference of a limb's two rods.
+
+    Two rods are half of a width to either side of their limb's middle. If both columns are one linear function of that,
+    and `width` is given, their difference is a derivative: without the large parts that both rods share, which would
+    not cancel in intervals.
+
+    Args:
+        matrix: (r, k).
+        counts: how many forces each limb transmits.
+        width: its symbol.
+    """
+    columns, first = [], 0
+    for count in counts:
+        own = matrix[:, first : first + count]
+        if count == 2 and width is not None:
+            slope = ca.jacobian(ca.densify(own[:, 0]), width)
+            own = 2 * ca.horzcat(ca.substitute(own[:, 0], width, 0), width * slope)
+        elif count == 2:
+            own = ca.horzcat(own[:, 0] + own[:, 1], own[:, 0] - own[:, 1])
+        columns.append(own)
+        first += count
+    return ca.sparsify(ca.horzcat(*columns))
 
 
 class _Felt:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from functools import reduce
+from typing import NamedTuple
 
 import casadi as ca
 
@@ -59,17 +60,32 @@ class WorstDirection(Size):
         return self.acceleration * ca.sqrt(largest) + ca.norm_2(vectors[:, -1])
 
 
-def safety_factors(load: MemberLoad, size: Size) -> dict[str, ca.SX]:
-    """By what may fail first, "buckling" or "yield": the member's capacity over its load."""
-    section, radius = load.section, load.tube.radius
-    tensions, bending, torsion = load.tensions(), bending_of(load, size), size.modulus(load.along.T @ load.moment)
-    push, pull = (reduce(ca.fmax, [size.most(sign * tension) for tension in tensions]) for sign in (-1, 1))
+class Slack(NamedTuple):
+    """How much more than its load says a member may bear [N, N m]."""
+
+    tension: float | ca.SX = 0.0
+    bending: float | ca.SX = 0.0
+    torsion: float | ca.SX = 0.0
+
+
+def demands(load: MemberLoad, size: Size, slack: Slack = Slack()) -> dict[str, tuple[ca.SX, ca.SX]]:  # noqa: B008
+    """By what may fail first, "buckling" [N] or "yield" [Pa]: the member's capacity, and what it needs."""
+    section, radius, tensions = load.section, load.tube.radius, load.tensions()
+    bending = bending_of(load, size) + slack.bending
+    push, pull = (reduce(ca.fmax, [size.most(sign * row) for row in tensions]) + slack.tension for sign in (-1, 1))
     stress = ca.fmax(push, pull) / section.area + bending * radius / section.second_moment
     if not load.ends:
+        torsion = size.modulus(load.along.T @ load.moment) + slack.torsion
         shear = torsion * radius / (2 * section.second_moment)
-        return {"yield": _factor(load.material.strength, ca.sqrt(stress**2 + 3 * shear**2))}
+        return {"yield": (ca.SX(load.material.strength), ca.sqrt(stress**2 + 3 * shear**2))}
     column = math.pi**2 * load.material.modulus * section.second_moment / load.length**2
-    return {"buckling": _factor(column, push), "yield": _factor(load.material.strength, stress)}
+    return {"buckling": (column, push), "yield": (ca.SX(load.material.strength), stress)}
+
+
+def safety_factors(load: MemberLoad, size: Size) -> dict[str, ca.SX]:
+    """By what may fail first, "buckling" or "yield": the member's capacity over what it needs."""
+    needs = demands(load, size)
+    return {what: capacity / ca.fmax(need, _LEAST * capacity) for what, (capacity, need) in needs.items()}
 
 
 def bending_of(load: MemberLoad, size: Size) -> ca.SX:
@@ -78,7 +94,3 @@ def bending_of(load: MemberLoad, size: Size) -> ca.SX:
         return size.norm(ca.skew(load.along) @ load.moment)
     across = sum(size.norm(ca.skew(load.along) @ end) for end in load.ends)
     return load.per_length * load.length**2 / _TRIANGLE * across
-
-
-def _factor(capacity: float | ca.SX, load: ca.SX) -> ca.SX:
-    return capacity / ca.fmax(load, _LEAST * capacity)

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import math
+from functools import partial, reduce
+from typing import NamedTuple
 
 import casadi as ca
+import numpy as np
 
-from kinematics.dynamics import WorstDirection, case_at_rest, safety_factors
-from kinematics.model import Margin, Measure, Mechanism
+from kinematics.arrays import Array
+from kinematics.dynamics import LoadCase, Slack, WorstDirection, case_at_rest, demands, safety_factors
+from kinematics.machine import Cut
+from kinematics.mathematics import near_inverse, row_sums
+from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
+
+_REGULAR = 1e-6  # what must be left of 1, which stands for an inverse in the middle of a box
 
 
 class Strength(Margin):
@@ -22,8 +30,7 @@ class Strength(Margin):
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
         """Of each rod, buckling and yield; of each cut of an arm, yield."""
-        size = WorstDirection(robot.load.acceleration)
-        case = case_at_rest(robot)
+        size, case = WorstDirection(robot.load.acceleration), case_at_rest(robot)
         factors = [f for load in case.loads(case.shared()) for f in safety_factors(load, size).values()]
         return ca.vertcat(*factors) if factors else ca.SX(math.inf)
 
@@ -31,6 +38,126 @@ class Strength(Margin):
         """The member of each component, and by what it fails."""
         size = WorstDirection(robot.load.acceleration)
         return [f"{own.member}, {what}" for own in case_at_rest(robot).bearers for what in safety_factors(own, size)]
+
+    def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
+        """Capacity - c load >= 0 with t = W^-1 Q enclosed by `_Enclosed`, and |A|_2 of an arm's bending by `_Turned`."""
+        case, acceleration = case_at_rest(robot), robot.load.acceleration
+        if not positive or not case.cuts:
+            return super().to_show(robot, claim, inside, positive)
+        exact = case.loads(case.shared())
+        bent = [ca.skew(load.along) @ load.moment[:, :-1] for load in exact if not load.ends]
+        system, directions = _system(case), exact[0].force.shape[1] - 1
+        count, rows = system.matrix.shape[0], max(system.matrix.shape[0], 3)
+        scaling = ca.SX.sym("scaling", rows, count + directions * len(bent))
+        enclosed = _Enclosed.of(system, scaling[:count, :count], WorstDirection(acceleration))
+        turns = iter(
+            scaling[:directions, count + k * directions : count + (k + 1) * directions] for k in range(len(bent))
+        )
+        shown = [enclosed.left - _REGULAR]
+        for cut, load in zip(case.cuts, case.loads(enclosed.forces), strict=True):
+            size = _Turned(acceleration, None if load.ends else next(turns))
+            needs = demands(load, size, enclosed.slack(cut))
+            shown += [*size.rows, *(capacity - claim.bound * need for capacity, need in needs.values())]
+        at_middle = ca.horzcat(*(_high(matrix, rows) for matrix in (system.matrix, *bent)))
+        return ToShow(ca.vertcat(*shown), scaling, at_middle, partial(_chosen, count, directions))
+
+
+class _System(NamedTuple):
+    """matrix z = needed, and z begins with the k transmitted forces."""
+
+    matrix: ca.SX
+    needed: ca.SX
+    count: int
+
+
+def _system(case: LoadCase) -> _System:
+    """W t = Q; or, of more forces than freedoms, C t = W^T v too, with the platform's displacement v in a unit that
+    makes its forces and t comparable.
+    """
+    f, k = case.wrenches.shape
+    if f == k:
+        return _System(case.wrenches, case.needed, k)
+    unit = ca.trace(case.compliance) / k
+    above = ca.horzcat(case.compliance / unit, -case.wrenches.T)
+    matrix = ca.vertcat(above, ca.horzcat(case.wrenches, ca.SX(f, f)))
+    return _System(matrix, ca.vertcat(ca.SX(k, case.needed.shape[1]), case.needed), k)
+
+
+class _Enclosed(NamedTuple):
+    """z with M z = Q, without an inverse: with any S and E = S M - 1, z = S Q - E z.
+
+    So z_i is within sum_j |E_ij| |z_j| of (S Q)_i, and no |z_j| is more than the largest |S Q| over 1 - |E|. S is near
+    M^-1 in the middle of a box, so that E is small. A row's modulus is what an acceleration in its worst direction and
+    the weights make of it.
+
+    Attributes:
+        forces: (k, c) the first rows of S Q.
+        off: (k,) how far each may be from the transmitted force.
+        left: 1 - |E|, which must be above 0.
+    """
+
+    forces: ca.SX
+    off: ca.SX
+    left: ca.SX
+
+    @classmethod
+    def of(cls, system: _System, scaling: ca.SX, size: WorstDirection) -> _Enclosed:
+        first = scaling @ system.needed
+        n, k = scaling.shape[0], system.count
+        error = scaling @ system.matrix - ca.SX.eye(n)
+        found, moduli = first - error @ first, ca.fabs(error)
+        units = ca.SX.ones(n) if n == k else ca.sqrt(ca.sqrt(ca.sum2(scaling * scaling)))
+        away = (moduli @ units) / units
+        sizes = ca.vertcat(*(size.modulus(first[i, :]) for i in range(n)))
+        largest, left = ca.mmax(sizes / units), 1 - ca.mmax(away)
+        off = moduli @ (moduli @ (sizes + away * units * largest / left))
+        return cls(found[:k, :], off[:k], left)
+
+    def slack(self, cut: Cut) -> Slack:
+        """What a cut may bear besides."""
+        tension, torsion = (ca.fabs(cut.along.T @ v) @ self.off for v in (cut.force, cut.moment))
+        across = ca.skew(cut.along) @ cut.moment
+        return Slack(tension, ca.sqrt(ca.sum1(across * across)) @ self.off, torsion)
+
+
+class _Turned(WorstDirection):
+    """With |A|^2 <= g / h in place of the largest singular value A: of any V, g is the largest row sum of moduli of
+    (A V)^T A V, and h > 0 the smallest of V^T V with those beside the diagonal negative (both by Gershgorin).
+
+    V nearly diagonalises A^T A in the middle of a box. Without V, |A| is at most its Frobenius norm.
+    """
+
+    def __init__(self, acceleration: float, turn: ca.SX | None) -> None:
+        super().__init__(acceleration)
+        self._turn, self.rows = turn, list[ca.SX]()
+
+    def norm(self, vectors: ca.SX) -> ca.SX:
+        """As in `WorstDirection`, or a little more."""
+        moving, weights = vectors[:, :-1], ca.norm_2(vectors[:, -1])
+        if self._turn is None:
+            return self.acceleration * ca.sqrt(ca.sumsqr(moving)) + weights
+        turned = moving @ self._turn
+        most = reduce(ca.fmax, ca.vertsplit(ca.sum2(ca.fabs(turned.T @ turned))))
+        least = reduce(ca.fmin, ca.vertsplit(row_sums(self._turn.T @ self._turn)))
+        self.rows.append(least - _REGULAR)
+        return self.acceleration * ca.sqrt(most / least) + weights
+
+
+def _high(matrix: ca.SX, rows: int) -> ca.SX:
+    """With rows of zeros below."""
+    return ca.vertcat(matrix, ca.SX(rows - matrix.shape[0], matrix.shape[1]))
+
+
+def _chosen(count: int, directions: int, values: Array) -> Array:
+    """S beside each V: the inverse of the first `count` columns, the eigenvectors of the others' A^T A."""
+    found = np.zeros_like(values)
+    found[:, :count, :count] = near_inverse(values[:, :count, :count])
+    for first in range(count, values.shape[2], directions):
+        bent = values[:, :3, first : first + directions]
+        usable = np.isfinite(bent).all(axis=(1, 2), keepdims=True)
+        bent = np.where(usable, bent, 0.0)
+        found[:, :directions, first : first + directions] = np.linalg.eigh(np.swapaxes(bent, 1, 2) @ bent)[1]
+    return found
 
 
 STRENGTH = Strength()
