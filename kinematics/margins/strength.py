@@ -27,6 +27,7 @@ class Strength(Margin):
 
     name = "strength"
     words = "smallest safety factor of the members against buckling and yield, under the robot's load"
+    of_members = True
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
         """Of each rod, buckling and yield; of each cut of an arm, yield."""
@@ -40,7 +41,7 @@ class Strength(Margin):
         return [f"{own.member}, {what}" for own in case_at_rest(robot).bearers for what in safety_factors(own, size)]
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
-        """Capacity - c load >= 0 with t = W^-1 Q enclosed by `_Enclosed`, and |A|_2 of an arm's bending by `_Turned`."""
+        """Capacity - c load >= 0, with t = W^-1 Q enclosed by `_Enclosed`, and an arm's bending by `_Turned`."""
         case, acceleration = case_at_rest(robot), robot.load.acceleration
         if not positive or not case.cuts:
             return super().to_show(robot, claim, inside, positive)
@@ -63,11 +64,11 @@ class Strength(Margin):
 
 
 class _System(NamedTuple):
-    """matrix z = needed, and z begins with the k transmitted forces."""
+    """matrix z = needed; the first `forces` of z are the transmitted forces."""
 
     matrix: ca.SX
     needed: ca.SX
-    count: int
+    forces: int
 
 
 def _system(case: LoadCase) -> _System:
@@ -103,7 +104,7 @@ class _Enclosed(NamedTuple):
     @classmethod
     def of(cls, system: _System, scaling: ca.SX, size: WorstDirection) -> _Enclosed:
         first = scaling @ system.needed
-        n, k = scaling.shape[0], system.count
+        n, k = scaling.shape[0], system.forces
         error = scaling @ system.matrix - ca.SX.eye(n)
         found, moduli = first - error @ first, ca.fabs(error)
         units = ca.SX.ones(n) if n == k else ca.sqrt(ca.sqrt(ca.sum2(scaling * scaling)))

@@ -86,6 +86,7 @@ class Margin(ABC):
         holds_on_paths: whether it must be above 0 at every pose of a path.
         of_jacobians: whether it depends only on J_x and |J_q|, so that a mirror that keeps these keeps it.
         beyond_reach: whether it has a value even where a limb cannot reach.
+        of_members: whether it is the safety factor of the members, of which a cycle's motion has its own too.
         singularity: the kind of singularity where it is 0; empty if it shows none.
     """
 
@@ -95,6 +96,7 @@ class Margin(ABC):
     holds_on_paths: ClassVar[bool] = False
     of_jacobians: ClassVar[bool] = False
     beyond_reach: ClassVar[bool] = False
+    of_members: ClassVar[bool] = False
     singularity: ClassVar[str] = ""
 
     @abstractmethod

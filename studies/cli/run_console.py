@@ -6,7 +6,7 @@ from typing import Any
 
 from studies.cli.console import files_data, print_files, print_json, print_table
 from studies.cli.proof_console import proof_data
-from studies.report import FRAME, PROOFS, frame_rows, margin_columns, margin_rows, proof_rows
+from studies.report import FRAME, MEMBERS, PROOFS, frame_rows, margin_columns, margin_rows, member_rows, proof_rows
 from studies.results import Written
 from studies.stages import Outcome, Timing
 from trajectory.drive_files import FORMATS
@@ -80,6 +80,8 @@ def print_timing(
             ("quantity", "peak", "limit", "peak over limit", "proved at most", "joint", "at [s]"),
             piece.timed.verification.rows(),
         )
+    if timing.members:
+        print_table("Members over the whole cycle, the nearest to its limit first", MEMBERS, member_rows(timing))
     print_table("Reaction on the frame over the whole cycle", FRAME, frame_rows(timing))
     _print_between(timing)
     print_files(written)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -37,15 +38,22 @@ class FramePeak(Value):
 
 
 def frame_peaks(cycle: Cycle) -> dict[str, FramePeak]:
-    """The force [N] and the moment about the base's origin [N m] on the frame, by name, on both sides of each knot."""
-    times, found, start = [], [], 0.0
-    for piece in cycle.pieces:
-        parts = parts_of(piece.motion)
-        times.append(start + parts.times(piece.motion))
-        found.append(_reaction(cycle, piece, parts.tool(piece.motion)))
-        start += piece.duration
+    """The force [N] and the moment about the base's origin [N m] on the frame, by name."""
+    times, found = [], []
+    for piece, at, tool in dense_samples(cycle):
+        times.append(at)
+        found.append(_reaction(cycle, piece, tool))
     whole = np.concatenate(times)
     return {name: _peak(whole, np.concatenate([getattr(part, name) for part in found])) for name in FRAME_UNITS}
+
+
+def dense_samples(cycle: Cycle) -> Iterator[tuple[Piece, Array, PoseMotion]]:
+    """Each piece with times (k, j) from the cycle's start [s] and the motion there, on both sides of each knot."""
+    start = 0.0
+    for piece in cycle.pieces:
+        parts = parts_of(piece.motion)
+        yield piece, start + parts.times(piece.motion), parts.tool(piece.motion)
+        start += piece.duration
 
 
 def frame_reaction_text(cycle: Cycle, period: float) -> str:
