@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from functools import partial, reduce
+from collections.abc import Iterator
+from functools import partial
 from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.dynamics import LoadCase, Slack, WorstDirection, case_at_rest, demands, safety_factors
+from kinematics.dynamics import LoadCase, MemberLoad, Slack, WorstDirection, case_at_rest, demands, safety_factors
 from kinematics.machine import Cut
 from kinematics.mathematics import near_inverse, row_sums
 from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
@@ -45,22 +46,24 @@ class Strength(Margin):
         case, acceleration = case_at_rest(robot), robot.load.acceleration
         if not positive or not case.cuts:
             return super().to_show(robot, claim, inside, positive)
-        exact = case.loads(case.shared())
-        bent = [ca.skew(load.along) @ load.moment[:, :-1] for load in exact if not load.ends]
-        system, directions = _system(case), exact[0].force.shape[1] - 1
-        count, rows = system.matrix.shape[0], max(system.matrix.shape[0], 3)
+        system, bent = _system(case), [across for load in case.loads(case.shared()) for across in _across(load)]
+        count, directions = system.matrix.shape[0], bent[0].shape[1]
+        rows = max(count, 3)
         scaling = ca.SX.sym("scaling", rows, count + directions * len(bent))
-        enclosed = _Enclosed.of(system, scaling[:count, :count], WorstDirection(acceleration))
-        turns = iter(
-            scaling[:directions, count + k * directions : count + (k + 1) * directions] for k in range(len(bent))
-        )
+        turns = [scaling[:directions, k : k + directions] for k in range(count, scaling.shape[1], directions)]
+        size = _Turned(acceleration, iter(turns))
+        enclosed = _Enclosed.of(system, scaling[:count, :count], size)
         shown = [enclosed.left - _REGULAR]
         for cut, load in zip(case.cuts, case.loads(enclosed.forces), strict=True):
-            size = _Turned(acceleration, None if load.ends else next(turns))
             needs = demands(load, size, enclosed.slack(cut))
-            shown += [*size.rows, *(capacity - claim.bound * need for capacity, need in needs.values())]
+            shown += [capacity - claim.bound * need for capacity, need in needs.values()]
         at_middle = ca.horzcat(*(_high(matrix, rows) for matrix in (system.matrix, *bent)))
-        return ToShow(ca.vertcat(*shown), scaling, at_middle, partial(_chosen, count, directions))
+        return ToShow(ca.vertcat(*shown, *size.rows), scaling, at_middle, partial(_chosen, count, directions))
+
+
+def _across(load: MemberLoad) -> list[ca.SX]:
+    """What `_Turned.norm` is asked for, in its order, without the weights."""
+    return [ca.skew(load.along) @ vectors[:, :-1] for vectors in load.ends or (load.moment,)]
 
 
 class _System(NamedTuple):
@@ -125,23 +128,24 @@ class _Turned(WorstDirection):
     """With |A|^2 <= g / h in place of the largest singular value A: of any V, g is the largest row sum of moduli of
     (A V)^T A V, and h > 0 the smallest of V^T V with those beside the diagonal negative (both by Gershgorin).
 
-    V nearly diagonalises A^T A in the middle of a box. Without V, |A| is at most its Frobenius norm.
+    V nearly diagonalises A^T A in the middle of a box.
+
+    Attributes:
+        rows: what must be above 0 so that this holds.
     """
 
-    def __init__(self, acceleration: float, turn: ca.SX | None) -> None:
+    def __init__(self, acceleration: float, turns: Iterator[ca.SX]) -> None:
         super().__init__(acceleration)
-        self._turn, self.rows = turn, list[ca.SX]()
+        self._turns, self.rows = turns, list[ca.SX]()
 
     def norm(self, vectors: ca.SX) -> ca.SX:
         """As in `WorstDirection`, or a little more."""
-        moving, weights = vectors[:, :-1], ca.norm_2(vectors[:, -1])
-        if self._turn is None:
-            return self.acceleration * ca.sqrt(ca.sumsqr(moving)) + weights
-        turned = moving @ self._turn
-        most = reduce(ca.fmax, ca.vertsplit(ca.sum2(ca.fabs(turned.T @ turned))))
-        least = reduce(ca.fmin, ca.vertsplit(row_sums(self._turn.T @ self._turn)))
+        turn = next(self._turns)
+        turned = vectors[:, :-1] @ turn
+        most = ca.mmax(ca.sum2(ca.fabs(turned.T @ turned)))
+        least = ca.mmin(row_sums(turn.T @ turn))
         self.rows.append(least - _REGULAR)
-        return self.acceleration * ca.sqrt(most / least) + weights
+        return self.acceleration * ca.sqrt(most / least) + ca.norm_2(vectors[:, -1])
 
 
 def _high(matrix: ca.SX, rows: int) -> ca.SX:
