@@ -13,6 +13,7 @@ from kinematics.margins.passive_joint import PASSIVE_JOINT
 from kinematics.margins.reach import REACH
 from kinematics.margins.serial import DET_J_Q, J_Q
 from kinematics.margins.stiffness import INTERNAL_STIFFNESS, ROTATIONAL_STIFFNESS, STIFFNESS
+from kinematics.margins.strength import STRENGTH
 
 # What every mechanism has.
 STANDARD = (
@@ -27,6 +28,7 @@ STANDARD = (
     J_Q,
     DET_J_Q,
     DET_J_X,
+    STRENGTH,
     STIFFNESS,
     NATURAL_FREQUENCY,
     MASS,

@@ -90,6 +90,7 @@ class Margin(ABC):
         holds_on_paths: whether it must be above 0 at every pose of a path.
         of_jacobians: whether it depends only on J_x and |J_q|, for any robot.
         beyond_reach: whether it has a value even where a limb cannot reach.
+        of_members: whether it is the safety factor of the members, of which a cycle's motion has its own too.
         singularity: the kind of singularity where it is 0; empty if it shows none.
         records: the robot's records that it depends on, besides geometry and ranges: inertia, structure, load.
     """
@@ -101,6 +102,7 @@ class Margin(ABC):
     holds_on_paths: ClassVar[bool] = False
     of_jacobians: ClassVar[bool] = False
     beyond_reach: ClassVar[bool] = False
+    of_members: ClassVar[bool] = False
     singularity: ClassVar[str] = ""
     records: ClassVar[tuple[str, ...]] = ()
 

@@ -129,6 +129,14 @@ class Definition(ABC):
         return [LimbStatics(-(by_twist[i, :] / j_q[i]).T, ca.SX(1, 1), efforts[:, i]) for i in range(joints.numel())]
 
     @classmethod
+    def beyond_twist(cls, pose: ca.SX, g: SimpleNamespace, limb: int | None, point: ca.SX) -> ca.SX:  # noqa: ARG003
+        """(3, f - n) how a point that the pose carries moves with the freedoms of `statics` that follow the twist.
+
+        `limb`, from 0, is one that holds the point's body; None if no limb does.
+        """
+        return ca.SX(3, 0)
+
+    @classmethod
     def drives(cls, g: SimpleNamespace) -> ca.SX:  # noqa: ARG003
         """(m, m) constant C with actuators = C joints; the identity unless the drives couple joints."""
         return ca.SX.eye(len(cls.joint_names))

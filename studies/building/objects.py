@@ -39,6 +39,7 @@ from trajectory import Limits, Path, PoseBounds, RoundedPath, Setpoints, TimingL
 from trajectory.drive_files import Drive, drive_files
 
 OBJECTIVE = "fvi"
+FRAME_FILE = "frame_reaction.csv"  # what the machine exerts on its frame, beside the set-points
 
 
 def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
@@ -151,7 +152,9 @@ def drive_of(drive: DriveTable) -> Drive:
 
 
 def drive_file_names(study: Study, file: TomlFile, asked_for: Sequence[str] | None) -> list[str]:
-    """The drive files' names. A trial at rest along the path finds early what a format cannot express.
+    """The names of the drive files and of the file beside them.
+
+    A trial at rest along the path finds early what a format cannot express.
 
     Args:
         asked_for: formats of the command line, which replace the study's own.
@@ -166,7 +169,8 @@ def drive_file_names(study: Study, file: TomlFile, asked_for: Sequence[str] | No
     try:
         robot, drive = robot_of(study), drive_of(asked.drive)
         at_rest = _along(robot, path_of(asked, robot.pose_names), asked.period)
-        return [name for stem in stems for name in drive_files(stem, at_rest, asked.files, drive)]
+        names = [name for stem in stems for name in drive_files(stem, at_rest, asked.files, drive)]
+        return [*names, FRAME_FILE]
     except InvalidValue as error:
         by = f"for --format {' --format '.join(asked_for)}" if asked_for else ""
         key = ("trajectory",) if asked_for else ("trajectory", "files")

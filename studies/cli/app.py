@@ -152,7 +152,7 @@ def trajectory(
     from studies.cli import console
     from studies.cli.run_console import print_timing
     from studies.results import Written, write_setpoints
-    from studies.stages import require_on_cycle, stage, time_cycle
+    from studies.stages import Lasting, require_on_cycle, stage, time_cycle
     from studies.study_file import told_at_key
     from trajectory import LAWS
     from trajectory.drive_files import format_named
@@ -174,7 +174,9 @@ def trajectory(
         asked = asked.model_copy(update={"trajectory": asked.trajectory.model_copy(update={"law": law})})
     with told_at_key(file), console.progress() as tell, stage("cycle", tell):
         timing = time_cycle(asked, robot)
-    require_on_cycle(asked, timing.cycle)
+        if weakness := timing.weakness():
+            tell(Lasting(weakness))
+    require_on_cycle(asked, timing)
     print_timing(timing, write_setpoints(timing, asked, folder) if folder else Written(), json)
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from studies.cli.console import files_data, print_files, print_json, print_table
 from studies.cli.proof_console import proof_data
-from studies.report import PROOFS, margin_columns, margin_rows, proof_rows
+from studies.report import FRAME, MEMBERS, PROOFS, frame_rows, margin_columns, margin_rows, member_rows, proof_rows
 from studies.results import Written
 from studies.stages import Outcome, Timing
 from trajectory.drive_files import FORMATS
@@ -48,6 +48,7 @@ def print_timing(
             {
                 **made_for,
                 **figures,
+                **timing.loads(),
                 "lower_bound_of": "any motion on the cycle's own path, without a jerk limit",
                 "proved_on_the_path": timing.cycle.certificate.margins,
                 "proved_over_limit": timing.cycle.proved,
@@ -79,6 +80,9 @@ def print_timing(
             ("quantity", "peak", "limit", "peak over limit", "proved at most", "joint", "at [s]"),
             piece.timed.verification.rows(),
         )
+    if timing.members:
+        print_table("Members over the whole cycle, the nearest to its limit first", MEMBERS, member_rows(timing))
+    print_table("Reaction on the frame over the whole cycle", FRAME, frame_rows(timing))
     _print_between(timing)
     print_files(written)
 
@@ -101,7 +105,7 @@ def _outcome_data(outcome: Outcome, written: Written) -> dict[str, Any]:
         "active": outcome.active,
         "region": repr(outcome.region),
         "rounds": [vars(r) for r in outcome.synthesis.rounds] if outcome.synthesis else [],
-        "cycle": outcome.cycle_figures() or None,
+        "cycle": outcome.cycle_figures() | outcome.timing.loads() if outcome.timing else None,
         "cycle_header": dict(outcome.timing.setpoints.header) if outcome.timing else None,
         "prototype_cycle": outcome.prototype_timing.figures() if outcome.prototype_timing else None,
         "proofs": [proof_data(proof) for proof in outcome.proofs],

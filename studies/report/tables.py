@@ -4,8 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from studies.stages import Outcome, Proof, shown_pose
+from studies.stages import Outcome, Proof, Timing, shown_pose
+from trajectory import FRAME_UNITS
 
+FRAME = ("on the frame", "peak", "at [s]", "RMS", "peak along x", "along y", "along z")
+MEMBERS = (
+    "member",
+    "tension [N], below 0 compression",
+    "at [s]",
+    "bending [N m]",
+    "torsion [N m]",
+    "joint force [N]",
+    "safety factor",
+    "smallest at [s]",
+)
 PROOFS = ("claim at every pose", "answer", "boxes", "time [s]", "worst sampled", "room to the bound", "at pose")
 
 
@@ -29,6 +41,22 @@ def margin_rows(outcome: Outcome) -> list[tuple[str, ...]]:
             shown_pose(worst.pose),
         )
         for margin, worst in outcome.worst.items()
+    ]
+
+
+def frame_rows(timing: Timing) -> list[tuple[str, ...]]:
+    """What the machine exerts on its frame over the cycle, in the columns `FRAME`."""
+    return [
+        (f"{name} [{FRAME_UNITS[name]}]", *(f"{v:.6g}" for v in (p.peak, p.time, p.rms, *p.axes)))
+        for name, p in timing.frame.items()
+    ]
+
+
+def member_rows(timing: Timing) -> list[tuple[str, ...]]:
+    """What each member bears over the cycle, in the columns `MEMBERS`, the nearest to its limit first."""
+    return [
+        (peak.member, *(f"{value:.4g}" for name, value in peak.as_dict().items() if name != "member"))
+        for peak in sorted(timing.members, key=lambda peak: peak.safety)
     ]
 
 

@@ -141,7 +141,10 @@ def with_cycle(outcome: Outcome, progress: Progress, compare: bool = True) -> Ou
         return outcome
     with stage("cycle", progress):
         timing = time_cycle(study, outcome.robot)
-    on_cycle = margins_on(outcome.problem, outcome.robot, timing.cycle.ways, study.trajectory.grid)
+    grid = study.trajectory.grid
+    on_cycle = margins_on(outcome.problem, outcome.robot, timing.cycle.ways, grid, timing.weakest)
+    if weakness := timing.weakness():
+        progress(Lasting(weakness))
     if outcome.prototype is not None and compare:
         try:
             with stage("cycle of the study's own geometry", progress):

@@ -17,7 +17,7 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
-from kinematics.machine import TURN, Bodies, Member, Particle, Rotor, Tube, angle, bar, length, member_mass, ratio
+from kinematics.machine import AXES, TURN, Bodies, Member, Particle, Rotor, Tube, angle, bar, length, member_mass, ratio
 from kinematics.margins import ANGLE_ACCURACY, INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.mathematics import determinant, distinct, volume, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, joined_to_home, polished
@@ -188,7 +188,7 @@ class Par4(PairedArms):
             mass = own if i.half_masses is None else i.half_masses[k]
             bodies.particles.append(Particle(halves[k], mass, pose[:3] + side * half))
         bodies.particles.append(Particle("bars", i.bars_mass + payload, pose[:3]))
-        bodies.rotors.extend([Rotor(i.bars_inertia, psi), Rotor(i.tool, pose[3])])
+        bodies.rotors.extend([Rotor(i.bars_inertia, psi, AXES[2]), Rotor(i.tool, pose[3], AXES[2])])
         return bodies
 
     @classmethod

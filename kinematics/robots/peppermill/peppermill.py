@@ -21,6 +21,7 @@ from kinematics.arrays import Array
 from kinematics.dynamics import from_actuators, to_actuators
 from kinematics.evaluation import evaluate
 from kinematics.machine import (
+    AXES,
     TURN,
     Bodies,
     Member,
@@ -229,7 +230,7 @@ class Peppermill(Mechanism):
             carriage, link = carriages[:, limb], elbows[:, limb] - carriages[:, limb]
             mass, centre, factor = arm_mass(links * g.proximal_lengths[limb], i.proximal_hub, i.proximal_joint, given)
             own = (factor - 1) * mass * (centre * g.proximal_lengths[limb]) ** 2  # beyond the particle at the centre
-            slide, proximal, nut = (f"{name} {limb + 1}" for name in ("carriage", "proximal", "nut"))
+            slide, proximal, nut = (f"{name} {limb + 1}" for name in ("carriage", "proximal link", "nut"))
             bodies.particles.extend(
                 [
                     Particle(slide, i.carriage_mass, carriage),
@@ -237,11 +238,11 @@ class Peppermill(Mechanism):
                     Particle(nut, i.nut_mass, nuts[:, limb]),
                 ]
             )
-            bodies.rotors.append(Rotor(i.carriage + own, joints[2 + limb]))
+            bodies.rotors.append(Rotor(i.carriage + own, joints[2 + limb], AXES[limb]))
             whole, middle = rod_mass(links * g.distal_lengths[limb], i.distal_joint, i.distal_mass, i.rod_middle)
             bodies.rods.append(Rod(whole, middle, (nut, proximal), nuts[:, limb], elbows[:, limb]))
         bodies.particles.append(Particle("platform", i.platform_mass + payload, pose[:3]))
-        bodies.rotors.append(Rotor(i.tool, pose[3]))
+        bodies.rotors.append(Rotor(i.tool, pose[3], AXES[2]))
         return bodies
 
     @classmethod
@@ -258,6 +259,14 @@ class Peppermill(Mechanism):
     statics = statics
 
     @classmethod
+    def beyond_twist(cls, pose: ca.SX, g: SimpleNamespace, limb: int | None, point: ca.SX) -> ca.SX:
+        """Two tilts about the tool point, and each nut's own turn, by which it falls."""
+        tilts, turns = -ca.skew(point - pose[:3])[:, :2], ca.SX(3, 2)
+        if limb is not None:
+            turns[2, limb] = -g.pitches[limb] / TURN
+        return ca.horzcat(tilts, turns)
+
+    @classmethod
     def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
         """Proximal and distal links, and the screws between the nuts; all at `points_apart`."""
         carriages, elbows, nuts = cls.points_apart(pose, joints, g)
@@ -267,7 +276,7 @@ class Peppermill(Mechanism):
             slide, elbow, nut = f"carriage {k}", f"elbow {k}", f"nut {k}"
             near, far = (_link(*ends, g) for ends in ((carriages[:, i], elbows[:, i]), (elbows[:, i], nuts[:, i])))
             found += [
-                Member(f"proximal link {k}", (slide, elbow), "link", (near,), f"proximal {k}"),
+                Member(f"proximal link {k}", (slide, elbow), "link", (near,)),
                 Member(f"distal link {k}", (elbow, nut), "link", (far,), f"rod {k}"),
             ]
         return found

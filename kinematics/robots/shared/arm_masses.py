@@ -62,7 +62,7 @@ def arms_and_rods(
     i, limbs, bodies = robot.inertia, robot.limbs(g), Bodies()
     swing, elbows, ends = limbs.swing(joints), limbs.elbows(joints), robot.platform_points(pose, g)
     members = {member.name: member for member in robot.members(pose, joints, g)}
-    count = joints.numel()
+    count, axes = joints.numel(), limbs.axes()
     arms, rods = (ca.repmat(length, count // length.numel(), 1) for length in (limbs.arm, limbs.rod))
 
     def tube_mass(member: Member, place: int, length: ca.SX) -> ca.SX:
@@ -78,7 +78,7 @@ def arms_and_rods(
         place = centre * arms[limb]
         bodies.particles.append(Particle(arm.name, mass, limbs.actuators[:, limb] + place * swing[:, limb]))
         own = (factor - 1) * mass * place**2  # beyond the particle at the centre of mass
-        bodies.rotors.append(Rotor(i.drive + own, joints[limb]))
+        bodies.rotors.append(Rotor(i.drive + own, joints[limb], axes[:, limb]))
         tubes, joint = several * tube_mass(single, 0, rods[limb]), several * i.rod_joint
         whole, middle = rod_mass(tubes, joint, i.rod_mass, i.rod_middle)
         bodies.rods.append(Rod(whole, middle, (platforms[limb], arm.name), ends[:, limb], elbows[:, limb]))
