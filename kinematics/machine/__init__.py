@@ -26,9 +26,9 @@ from kinematics.machine.members import (
     platform,
     require_walls,
     shared_joints,
-    unjoined,
 )
 from kinematics.machine.structure import Structure
+from kinematics.machine.surroundings import Obstacle, PayloadHull, Surroundings
 
 __all__ = [
     "AXES",
@@ -49,9 +49,11 @@ __all__ = [
     "Load",
     "Material",
     "Member",
+    "Obstacle",
     "Pair",
     "Particle",
     "PassiveJoint",
+    "PayloadHull",
     "Plate",
     "Points",
     "Reference",
@@ -59,6 +61,7 @@ __all__ = [
     "RodRanges",
     "Rotor",
     "Structure",
+    "Surroundings",
     "Tree",
     "TreeJoint",
     "Tube",
@@ -74,5 +77,4 @@ __all__ = [
     "screw_pitch",
     "shared_joints",
     "universal",
-    "unjoined",
 ]

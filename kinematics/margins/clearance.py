@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from itertools import product
-from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.machine import Member, Plate, Tube, unjoined
-from kinematics.margins.parting import Pair, chosen
-from kinematics.mathematics import Convex, LinearForms, shortest_way, signed_distance
+from kinematics.margins.parting import Parted, chosen
+from kinematics.margins.solids import Pair, Solid, rooms
+from kinematics.mathematics import LinearForms, shortest_way
 from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
 
 _THIN = 0.05  # of the longer member's length: across a thinner gap a direction turns with the members
@@ -29,18 +28,23 @@ class Clearance(Margin):
     holds_on_paths = True
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
-        """One component for each pair of shapes."""
-        return ca.vertcat(*(signed_distance(a.core, b.core) - a.radius - b.radius for a, b in _pairs(_solids(robot))))
+        """One component for each pair of shapes, and for each shape and what is around it."""
+        pairs, walled = rooms(robot)
+        return ca.vertcat(
+            *(pair.distance for pair in pairs), *(ca.mmin(room.distances) for room in walled), ca.SX(0, 1)
+        )
 
     def places(self, robot: Mechanism) -> list[str]:
         """The names of both members."""
-        return [f"{a.member.name} and {b.member.name}" for a, b in _pairs(_solids(robot))]
+        pairs, walled = rooms(robot)
+        return [pair.place for pair in pairs] + [room.place for room in walled]
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:  # noqa: ARG002
-        """Each pair is parted by a direction; see `parting.py`."""
-        pairs = sorted(_grouped(robot, inside), key=lambda pair: pair.thin)
+        """Each pair is parted by a direction (see `parting.py`), and each corner is on its side of each wall."""
+        apart, walled = rooms(robot)
+        pairs = sorted(_grouped(robot, apart, inside), key=lambda pair: pair.thin)
         numbers = ca.SX.sym("direction", sum(pair.numbers for pair in pairs))
-        rows, first = [], 0
+        rows, first = [room.distances - claim.bound for room in walled], 0
         for pair in pairs:
             rows.append(pair.rows(claim.bound, numbers[first : first + pair.numbers]))
             first += pair.numbers
@@ -49,53 +53,17 @@ class Clearance(Margin):
         return ToShow(ca.vertcat(*rows), numbers, seen, lambda at: chosen(at, fixed)[..., None])
 
 
-class _Solid(NamedTuple):
-    """A shape of a member at a pose: all points within `radius` of `core`. `number` is its place."""
-
-    number: int
-    member: Member
-    core: Convex
-    radius: ca.SX
-
-    @property
-    def length(self) -> ca.SX:
-        """Of its first edge [m]."""
-        return ca.norm_2(self.core.corners[:, 1] - self.core.corners[:, 0])
-
-
-def _solids(robot: Mechanism) -> list[_Solid]:
-    """All shapes of all members, their points from one evaluation, so that equal terms are one node."""
-    model = robot.model()
-    shapes = [(m, shape) for m in robot.members(model.pose, model.joints, model.g) for shape in m.shapes]
-    points = [s.outline if isinstance(s, Plate) else ca.horzcat(s.start, s.end) for _, s in shapes]
-    at_pose = ca.cse(model.at_pose(ca.horzcat(*points)))
-    found, first = [], 0
-    for (member, shape), corners in zip(shapes, points, strict=True):
-        placed = at_pose[:, first : first + corners.shape[1]]
-        first += corners.shape[1]
-        flat = isinstance(shape, Plate)
-        core = Convex.polygon(placed) if flat else Convex(placed)
-        found.append(_Solid(len(found), member, core, shape.thickness / 2 if flat else shape.radius))
-    return found
-
-
-def _pairs(solids: list[_Solid]) -> list[tuple[_Solid, _Solid]]:
-    """The pairs of shapes that must not touch."""
-    return [
-        (a, b) for i, a in enumerate(solids) for b in solids[i + 1 :] if not set(a.member.joints) & set(b.member.joints)
-    ]
-
-
-def _grouped(robot: Mechanism, inside: Array) -> list[Pair]:
+def _grouped(robot: Mechanism, pairs: list[Pair], inside: Array) -> list[Parted]:
     """The pairs as they are parted: rods that are translates of each other together, the nearest pair first.
 
     Args:
         inside: (n,) a pose; it decides which pair of a group is the first, and which gaps are thin.
     """
-    model, solids = robot.model(), _solids(robot)
+    if not pairs:
+        return []
+    model = robot.model()
     forms = LinearForms(model.pose)
-    leader = _leaders(solids, forms)
-    pairs = _pairs(solids)
+    leader = _leaders(pairs, forms)
     ways = [shortest_way(a.core, b.core) for a, b in pairs]
     rooms = [ca.norm_2(way) - a.radius - b.radius for way, (a, b) in zip(ways, pairs, strict=True)]
     parts = [room / ca.fmax(a.length, b.length) for room, (a, b) in zip(rooms, pairs, strict=True)]
@@ -118,20 +86,21 @@ def _grouped(robot: Mechanism, inside: Array) -> list[Pair]:
             u, v = (forms.difference(solid.core.corners[:, 1], solid.core.corners[:, 0]) for solid in (a, b))
             segments = u[0] + u[1], v[0] + v[1]
         shifts, of_group = [start - starts[0] for start in starts], [ways[k] for k in places]
-        found.append(Pair(differences, shifts, of_group, a.radius + b.radius, segments))
+        found.append(Parted(differences, shifts, of_group, a.radius + b.radius, segments))
     return found
 
 
-def _leaders(solids: list[_Solid], forms: LinearForms) -> list[int]:
+def _leaders(pairs: list[Pair], forms: LinearForms) -> dict[int, int]:
     """For each solid the first one that is a fixed translate of it, joined to the same members: itself, or a rod."""
-    found: list[int] = []
-    for solid in solids:
-        alike = (first for first in solids[: solid.number] if found[first.number] == first.number)
-        found.append(next((first.number for first in alike if _translates(first, solid, forms)), solid.number))
+    solids = {solid.number: solid for pair in pairs for solid in pair}
+    found: dict[int, int] = {}
+    for number, solid in sorted(solids.items()):
+        alike = (first for first in found if found[first] == first and _translates(solids[first], solid, forms))
+        found[number] = next(alike, number)
     return found
 
 
-def _translates(one: _Solid, two: _Solid, forms: LinearForms) -> bool:
+def _translates(one: Solid, two: Solid, forms: LinearForms) -> bool:
     if one.member is two.member or one.member.joints != two.member.joints or one.core.faces or two.core.faces:
         return False
     ends = [forms.difference(two.core.corners[:, i], one.core.corners[:, i]) for i in (0, 1)]

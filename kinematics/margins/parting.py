@@ -25,7 +25,7 @@ _SEEN_FIXED, _SEEN_TURNING = 3, 16  # what the choice of a direction looks at
 
 
 @dataclass(frozen=True)
-class Pair:
+class Parted:
     """Two bodies, each with its translates.
 
     Attributes:
@@ -105,7 +105,7 @@ def _least(w: ca.SX, vectors: list[ca.SX]) -> ca.SX:
 
 
 def chosen(seen: Array, fixed: int) -> Array:
-    """(k, rows) of `Pair.seen` of all pairs -> (k, numbers) the directions that suit the middle of each box.
+    """(k, rows) of `Parted.seen` of all pairs -> (k, numbers) the directions that suit the middle of each box.
 
     Args:
         fixed: the number of pairs with a fixed direction. They come before those whose direction turns.

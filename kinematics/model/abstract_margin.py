@@ -105,8 +105,8 @@ class Margin(ABC):
         `atan2`, `fabs`, `fmin` and `fmax`. Write a modulus or a minimum as the outermost operation: it is then split.
         """
 
-    def limbs(self, robot: Mechanism) -> list[int] | None:  # noqa: ARG002
-        """(k,) the limb of each component, counted from 1; None if components do not belong to limbs."""
+    def places(self, robot: Mechanism) -> list[str] | None:  # noqa: ARG002
+        """(k,) the place of each component in words, such as "limb 1"; None if components have none of their own."""
         return None
 
     def smallest(self, robot: Mechanism, measure: Measure) -> ca.SX:

@@ -3,7 +3,7 @@
 from kinematics.robots.shared.arm_masses import ArmInertia, arms_and_rods
 from kinematics.robots.shared.coincident_limbs import ALIKE, HalvesGeometry, twins
 from kinematics.robots.shared.internal_determinant import INTERNAL_DETERMINANT
-from kinematics.robots.shared.limb_members import SIDES, limb_members, studs
+from kinematics.robots.shared.limb_members import SIDES, limb_members, motors, studs
 from kinematics.robots.shared.paired_rods import RodLevel, outline
 from kinematics.robots.shared.rotary_limbs import (
     ArmRanges,
@@ -31,6 +31,7 @@ __all__ = [
     "columns",
     "height_in_reach",
     "limb_members",
+    "motors",
     "outline",
     "radial_directions",
     "studs",
