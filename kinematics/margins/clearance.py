@@ -8,12 +8,14 @@ import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.margins.parting import Parted, chosen
+from kinematics.margins.parting import Corner, Fixed, Turning, chosen
 from kinematics.margins.solids import Pair, Solid, rooms
 from kinematics.mathematics import LinearForms, shortest_way
 from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
 
-_THIN = 0.05  # of the longer member's length: across a thinner gap a direction turns with the members
+# Of the longer member's length:
+_THIN = 0.05  # across a thinner gap a direction turns with the members
+_WIDE = 0.1  # across a wider gap one direction parts all shapes of two members
 
 
 class Clearance(Margin):
@@ -42,18 +44,18 @@ class Clearance(Margin):
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:  # noqa: ARG002
         """Each pair is parted by a direction (see `parting.py`), and each corner is on its side of each wall."""
         apart, walled = rooms(robot)
-        pairs = sorted(_grouped(robot, apart, inside), key=lambda pair: pair.thin)
+        pairs = sorted(_grouped(robot, apart, inside), key=lambda pair: isinstance(pair, Turning))
         numbers = ca.SX.sym("direction", sum(pair.numbers for pair in pairs))
         rows, first = [room.distances - claim.bound for room in walled], 0
         for pair in pairs:
             rows.append(pair.rows(claim.bound, numbers[first : first + pair.numbers]))
             first += pair.numbers
-        fixed = sum(not pair.thin for pair in pairs)
+        fixed = sum(isinstance(pair, Fixed) for pair in pairs)
         seen = ca.vertcat(*(pair.seen(claim.bound) for pair in pairs))
         return ToShow(ca.vertcat(*rows), numbers, seen, lambda at: chosen(at, fixed)[..., None])
 
 
-def _grouped(robot: Mechanism, pairs: list[Pair], inside: Array) -> list[Parted]:
+def _grouped(robot: Mechanism, pairs: list[Pair], inside: Array) -> list[Fixed | Turning]:
     """The pairs as they are parted: rods that are translates of each other together, the nearest pair first.
 
     Args:
@@ -69,34 +71,44 @@ def _grouped(robot: Mechanism, pairs: list[Pair], inside: Array) -> list[Parted]
     parts = [room / ca.fmax(a.length, b.length) for room, (a, b) in zip(rooms, pairs, strict=True)]
     at = ca.Function("gaps", [model.pose, model.geometry], [ca.vertcat(*rooms), ca.vertcat(*parts)])
     room, part = (np.array(v)[:, 0] for v in at(inside, robot.geometry.vector()))
-    groups: dict[tuple[int, int], list[int]] = {}
+    groups: dict[tuple[object, ...], list[int]] = {}
     for k in np.argsort(room, kind="stable").tolist():
-        a, b = pairs[k]
-        groups.setdefault((leader[a.number], leader[b.number]), []).append(k)
-    found = []
+        a, b = (leader[solid.number] for solid in pairs[k])
+        of_members = (a.member.name, b.member.name) if part[k] > _WIDE else (a.number, b.number)
+        groups.setdefault(of_members, []).append(k)
+    found: list[Fixed | Turning] = []
     for places in groups.values():
-        a, b = pairs[places[0]]
-        differences = [
-            forms.difference(b.core.corners[:, j], a.core.corners[:, i])
-            for i, j in product(range(a.core.corners.shape[1]), range(b.core.corners.shape[1]))
-        ]
-        starts = [forms.difference(pairs[k][1].core.corners[:, 0], pairs[k][0].core.corners[:, 0])[1] for k in places]
-        segments = None
-        if not a.core.faces and not b.core.faces and part[places[0]] < _THIN:
-            u, v = (forms.difference(solid.core.corners[:, 1], solid.core.corners[:, 0]) for solid in (a, b))
-            segments = u[0] + u[1], v[0] + v[1]
-        shifts, of_group = [start - starts[0] for start in starts], [ways[k] for k in places]
-        found.append(Parted(differences, shifts, of_group, a.radius + b.radius, segments))
+        members, of_group = [pairs[k] for k in places], [ways[k] for k in places]
+        segments = not any(solid.core.faces for solid in members[0])
+        if segments and part[places[0]] < _THIN:
+            found.append(_turning(members, of_group, forms))
+        else:
+            found.append(Fixed([(_corners(pair, forms), pair.thick) for pair in members], of_group))
     return found
 
 
-def _leaders(pairs: list[Pair], forms: LinearForms) -> dict[int, int]:
+def _turning(pairs: list[Pair], ways: list[ca.SX], forms: LinearForms) -> Turning:
+    """The first pair, and the others as its translates."""
+    ends = _corners(pairs[0], forms)
+    u, v = (forms.difference(solid.core.corners[:, 1], solid.core.corners[:, 0]) for solid in pairs[0])
+    shifts = [_corners(pair, forms)[0].fixed - ends[0].fixed for pair in pairs]
+    return Turning(ends, (u[0] + u[1], v[0] + v[1]), shifts, ways, pairs[0].thick)
+
+
+def _corners(pair: Pair, forms: LinearForms) -> list[Corner]:
+    one, two = (solid.core.corners for solid in pair)
+    return [
+        Corner(*forms.difference(two[:, j], one[:, i])) for i, j in product(range(one.shape[1]), range(two.shape[1]))
+    ]
+
+
+def _leaders(pairs: list[Pair], forms: LinearForms) -> dict[int, Solid]:
     """For each solid the first one that is a fixed translate of it, joined to the same members: itself, or a rod."""
     solids = {solid.number: solid for pair in pairs for solid in pair}
-    found: dict[int, int] = {}
+    found: dict[int, Solid] = {}
     for number, solid in sorted(solids.items()):
-        alike = (first for first in found if found[first] == first and _translates(solids[first], solid, forms))
-        found[number] = next(alike, number)
+        alike = (first for first in found.values() if _translates(first, solid, forms))
+        found[number] = next(alike, solid)
     return found
 
 

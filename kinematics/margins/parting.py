@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import reduce
+from typing import ClassVar, NamedTuple
 
 import casadi as ca
 import numba
@@ -20,92 +21,99 @@ import numpy as np
 from kinematics.arrays import Array
 
 _LONG_ENOUGH = 1e-6  # what |w|^2, 1 in the middle of a box, must exceed
-_FIXED, _TURNING = 3, 12  # numbers of a direction
-_SEEN_FIXED, _SEEN_TURNING = 3, 16  # what the choice of a direction looks at
+_SEEN_FIXED, _SEEN_TURNING = 3, 16  # numbers that the choice of a direction looks at
+
+
+class Corner(NamedTuple):
+    """A corner of one body seen from a corner of the other: what moves with the pose, and the rest; (3,) each."""
+
+    moving: ca.SX
+    fixed: ca.SX
 
 
 @dataclass(frozen=True)
-class Parted:
-    """Two bodies, each with its translates.
+class Fixed:
+    """Pairs of bodies that one fixed direction parts.
 
     Attributes:
-        differences: from the corners of one to those of the other, each as a part that moves with the pose and a
-            fixed part; (3,) each.
-        shifts: (3,) of each translated pair against this one, the first 0.
-        ways: (3,) the shortest way between the bodies of each translated pair.
-        thick: the sum of the radii [m].
-        segments: of two segments with a thin gap each from start to end, (3,). Then the direction turns with them, and
-            the differences are from start to start, from start to end, from end to start, and from end to end.
+        pairs: the corners of each pair, and the sum of its radii [m].
+        ways: (3,) the shortest way between the bodies of each pair.
     """
 
-    differences: list[tuple[ca.SX, ca.SX]]
+    pairs: list[tuple[list[Corner], ca.SX]]
+    ways: list[ca.SX]
+    numbers: ClassVar[int] = 3
+
+    def seen(self, bound: ca.SX) -> ca.SX:  # noqa: ARG002
+        """What the choice of a direction looks at: the shortest way of all."""
+        return reduce(lambda a, b: ca.if_else(ca.sumsqr(b) < ca.sumsqr(a), b, a), self.ways)
+
+    def rows(self, bound: ca.SX, w: ca.SX) -> ca.SX:
+        """Expressions that are all at least 0 only if the bodies of each pair are at least `bound` apart.
+
+        There is one for all corners that move alike.
+        """
+        size = ca.norm_2(w)
+        groups: dict[tuple[int, ...], tuple[ca.SX, list[ca.SX]]] = {}
+        for corners, thick in self.pairs:
+            for moving, fixed in corners:
+                name = tuple(moving[i].element_hash() for i in range(3))
+                groups.setdefault(name, (moving, []))[1].append(ca.dot(w, fixed) - (bound + thick) * size)
+        rows = [ca.dot(w, moving) + reduce(ca.fmin, rest) for moving, rest in groups.values()]
+        return ca.vertcat(ca.sumsqr(w) - _LONG_ENOUGH, *rows)
+
+
+@dataclass(frozen=True)
+class Turning:
+    """Two segments with a thin gap, and their translates.
+
+    Attributes:
+        ends: from start to start, from start to end, from end to start, and from end to end.
+        segments: each from start to end, (3,).
+        shifts: (3,) of each translated pair against this one, the first 0.
+        ways: (3,) the shortest way between the segments of each pair.
+        thick: the sum of the radii [m].
+    """
+
+    ends: list[Corner]
+    segments: tuple[ca.SX, ca.SX]
     shifts: list[ca.SX]
     ways: list[ca.SX]
     thick: ca.SX
-    segments: tuple[ca.SX, ca.SX] | None = None
-
-    @property
-    def thin(self) -> bool:
-        """Whether the direction turns with the members."""
-        return self.segments is not None
-
-    @property
-    def numbers(self) -> int:
-        """How many a direction has."""
-        return _TURNING if self.thin else _FIXED
+    numbers: ClassVar[int] = 12
 
     def seen(self, bound: ca.SX) -> ca.SX:
-        """What `chosen` looks at: the shortest way, and for a thin gap also the ends and the distance to keep."""
+        """What the choice of a direction looks at: the shortest way, the ends, and the distance to keep."""
         best, shift = self.ways[0], self.shifts[0]
         for other, moved in zip(self.ways[1:], self.shifts[1:], strict=True):
             nearer = ca.sumsqr(other) < ca.sumsqr(best)
             best, shift = ca.if_else(nearer, other, best), ca.if_else(nearer, moved, shift)
-        if not self.thin:
-            return best
-        return ca.vertcat(best, *(moving + fixed + shift for moving, fixed in self.differences), bound + self.thick)
+        return ca.vertcat(best, *(moving + fixed + shift for moving, fixed in self.ends), bound + self.thick)
 
     def rows(self, bound: ca.SX, numbers: ca.SX) -> ca.SX:
-        """Expressions that are all at least 0 only if the pair and its translates are at least `bound` apart."""
-        return self._turning_rows(bound, numbers) if self.thin else self._fixed_rows(bound, numbers)
+        """Expressions that are all at least 0 only if the segments of each pair are at least `bound` apart.
 
-    def _fixed_rows(self, bound: ca.SX, w: ca.SX) -> ca.SX:
-        """One row for all corners that move alike."""
-        least, kept = _least(w, self.shifts), (bound + self.thick) * ca.norm_2(w)
-        groups: dict[tuple[int, ...], tuple[ca.SX, list[ca.SX]]] = {}
-        for moving, fixed in self.differences:
-            name = tuple(moving[i].element_hash() for i in range(3))
-            groups.setdefault(name, (moving, []))[1].append(fixed)
-        rows = [ca.dot(w, moving) + _least(w, fixed) + least - kept for moving, fixed in groups.values()]
-        return ca.vertcat(ca.sumsqr(w) - _LONG_ENOUGH, *rows)
-
-    def _turning_rows(self, bound: ca.SX, numbers: ca.SX) -> ca.SX:
-        """With w = w_0 + m x v + n x u + k u x v, where u and v are the segments.
-
-        A point of one and a point of the other differ by d + t v - s u, where d is the difference of two ends; near
-        the gap it is small. What is 0, such as v . (m x v), is left out.
+        With w = w_0 + m x v + n x u + k u x v, where u and v are the segments. A point of one and a point of the other
+        differ by d + t v - s u, where d is the difference of two ends; near the gap it is small. What is 0, such as
+        v . (m x v), is left out.
         """
         s, t, fixed, m, n, k = ca.vertsplit(numbers, [0, 1, 2, 5, 8, 11, 12])
-        ends = [moving + rest for moving, rest in self.differences]
         shares = ((1 - s) * (1 - t), (1 - s) * t, s * (1 - t), s * t)
-        d = sum((share * end for share, end in zip(shares, ends, strict=True)), ca.SX(3, 1))
-        assert self.segments is not None
+        d = sum((share * (end.moving + end.fixed) for share, end in zip(shares, self.ends, strict=True)), ca.SX(3, 1))
         u, v = self.segments
         both = ca.cross(u, v)
         w = fixed + ca.cross(m, v) + ca.cross(n, u) + k * both
         along_d = ca.dot(fixed, d) + ca.dot(m, ca.cross(v, d)) + ca.dot(n, ca.cross(u, d)) + k * ca.dot(both, d)
         along_u = ca.dot(fixed, u) - ca.dot(m, both)
         along_v = ca.dot(fixed, v) + ca.dot(n, both)
-        near = along_d + _least(w, self.shifts) - (bound + self.thick) * ca.norm_2(w)
+        least = reduce(ca.fmin, (ca.dot(w, shift) for shift in self.shifts))
+        near = along_d + least - (bound + self.thick) * ca.norm_2(w)
         rows = [near + (j - t) * along_v - (i - s) * along_u for i in (0, 1) for j in (0, 1)]
         return ca.vertcat(ca.sumsqr(w) - _LONG_ENOUGH, *rows)
 
 
-def _least(w: ca.SX, vectors: list[ca.SX]) -> ca.SX:
-    return reduce(ca.fmin, (ca.dot(w, vector) for vector in vectors))
-
-
 def chosen(seen: Array, fixed: int) -> Array:
-    """(k, rows) of `Parted.seen` of all pairs -> (k, numbers) the directions that suit the middle of each box.
+    """(k, rows) of `seen` of all pairs -> (k, numbers) the directions that suit the middle of each box.
 
     Args:
         fixed: the number of pairs with a fixed direction. They come before those whose direction turns.
@@ -126,10 +134,10 @@ def _fixed_directions(ways: Array) -> Array:
 def _turning_directions(seen: Array) -> Array:
     """(k, pairs, 16) -> (k, pairs, 12): of the directions that may part a pair, that with the most room."""
     flat = np.ascontiguousarray(seen).reshape(-1, _SEEN_TURNING)
-    result = np.zeros((len(flat), _TURNING))
+    result = np.zeros((len(flat), Turning.numbers))
     straight = _fixed_directions(flat[:, :3])
     _choose(straight, flat[:, 3:15].reshape(-1, 4, 3), flat[:, 15], result)
-    return result.reshape(*seen.shape[:-1], _TURNING)
+    return result.reshape(*seen.shape[:-1], Turning.numbers)
 
 
 @numba.njit(nogil=True, cache=True, error_model="numpy")

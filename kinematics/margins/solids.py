@@ -52,7 +52,12 @@ class Pair(NamedTuple):
     @property
     def distance(self) -> ca.SX:
         """Between their surfaces [m]; minus the depth if they intersect."""
-        return signed_distance(self.one.core, self.two.core) - self.one.radius - self.two.radius
+        return signed_distance(self.one.core, self.two.core) - self.thick
+
+    @property
+    def thick(self) -> ca.SX:
+        """The sum of the radii [m]."""
+        return self.one.radius + self.two.radius
 
 
 class Walled(NamedTuple):
