@@ -27,10 +27,10 @@ from kinematics.machine.members import (
     bar,
     platform,
     shared_joints,
-    unjoined,
 )
 from kinematics.machine.statics import Cut, LimbStatics, rod_cut
 from kinematics.machine.structure import Structure
+from kinematics.machine.surroundings import Obstacle, PayloadHull, Surroundings
 
 __all__ = [
     "AXES",
@@ -56,9 +56,11 @@ __all__ = [
     "Load",
     "Material",
     "Member",
+    "Obstacle",
     "Pair",
     "Particle",
     "PassiveJoint",
+    "PayloadHull",
     "Plate",
     "Points",
     "Reference",
@@ -67,6 +69,7 @@ __all__ = [
     "Rotor",
     "Section",
     "Structure",
+    "Surroundings",
     "Tree",
     "TreeJoint",
     "Tube",
@@ -86,5 +89,4 @@ __all__ = [
     "screw_pitch",
     "shared_joints",
     "universal",
-    "unjoined",
 ]

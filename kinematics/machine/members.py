@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from itertools import combinations
 from typing import NamedTuple
 
 import casadi as ca
@@ -72,11 +70,6 @@ class Member(NamedTuple):
 def bar(name: str, joints: tuple[str, ...], material: str, start: ca.SX, end: ca.SX, radius: ca.SX) -> Member:
     """A member that is one solid bar."""
     return Member(name, joints, material, (Tube(start, end, radius, radius),))
-
-
-def unjoined(members: Sequence[Member]) -> Iterator[tuple[Member, Member]]:
-    """The pairs of members that must not touch."""
-    return (pair for pair in combinations(members, 2) if not set(pair[0].joints) & set(pair[1].joints))
 
 
 def shared_joints(name: str, points: np.ndarray) -> list[str]:

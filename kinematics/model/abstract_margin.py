@@ -119,8 +119,8 @@ class Margin(ABC):
         """Whether a mirror that keeps J_x and |J_q|, in another order of the limbs, keeps the margin of this robot."""
         return self.of_jacobians
 
-    def limbs(self, robot: Mechanism) -> list[int] | None:  # noqa: ARG002
-        """(k,) the limb of each component, counted from 1; None if components do not belong to limbs."""
+    def places(self, robot: Mechanism) -> list[str] | None:  # noqa: ARG002
+        """(k,) the place of each component in words, such as "limb 1"; None if components have none of their own."""
         return None
 
     def worst(self, robot: Mechanism, measure: Measure) -> ca.SX:

@@ -44,6 +44,7 @@ class Definition(ABC):
     counts_turns: ClassVar[bool] = False  # whether an angle a turn on is another pose, as on a screw
     fvi_bounds: ClassVar[FviBounds]
     mirrors: ClassVar[tuple[tuple[str, ...], ...]] = ()  # coordinates whose signs change together: a mirror image
+    tool_member: ClassVar[str] = "platform"  # the member that carries the tool
     margins: ClassVar[Mapping[str, Margin]]  # by name: `by_name(*STANDARD, ...)`, and what the mechanism adds
 
     @classmethod
@@ -135,6 +136,13 @@ class Definition(ABC):
         `limb`, from 0, is one that holds the point's body; None if no limb does.
         """
         return ca.SX(3, 0)
+
+    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
+        """Bodies in the way whose masses follow from no section: the base, rails, slides, motors.
+
+        Those of the base share the joint "base".
+        """
+        return []
 
     @classmethod
     def drives(cls, g: SimpleNamespace) -> ca.SX:  # noqa: ARG003

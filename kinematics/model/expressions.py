@@ -70,6 +70,10 @@ def margin(robot: Mechanism, _: Model, name: str, measure: Measure) -> list[ca.S
     return [robot.margins[name].worst(robot, measure)]
 
 
+def margin_components(robot: Mechanism, model: Model, name: str, measure: Measure) -> Build:
+    return [model.pose], [robot.margins[name].components(robot, measure)]
+
+
 def margin_everywhere(robot: Mechanism, model: Model, name: str) -> Build:
     measure = Measure(robot.fvi_bounds, robot.characteristic_length)
     return [model.pose], [robot.margins[name].worst(robot, measure)]

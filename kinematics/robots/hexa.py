@@ -33,6 +33,7 @@ from kinematics.robots.shared import (
     arms_and_rods,
     columns,
     limb_members,
+    motors,
     radial_directions,
     twins,
     upright_limbs,
@@ -67,6 +68,8 @@ class HexaGeometry(GeometryRecord):
     rod_radius: float = length(0.006, doc="of the rods' tubes, outside")
     rod_wall: float = length(0.0015, doc="of the rods' tubes")
     plate_thickness: float = length(0.008, doc="of the platform")
+    motor_radius: float = length(0.040, doc="of the motors")
+    motor_length: float = length(0.080, doc="of the motors along their axes, without their round ends")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -166,6 +169,10 @@ class Hexa(SixLegs, RotaryLimbs):
         """Arms, rods and platform."""
         platform = self.platform_member(self.platform_points(pose, g), g)
         return [*limb_members(type(self), pose, joints, g, None), platform]
+
+    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
+        """The motors."""
+        return motors(self.limbs(g), g)
 
     @classmethod
     def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:

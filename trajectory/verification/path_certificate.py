@@ -106,7 +106,7 @@ class _Claims:
         values = np.array(ca.Function("start", symbols, [ca.vertcat(*inner)])(start, fixed))[:, 0]
         kept = np.flatnonzero(values != np.inf)  # a limit at infinity cannot be met
         self.names = [parts[k][0] for k in kept]
-        self.limbs = [parts[k][1] for k in kept]
+        self.places = [parts[k][1] for k in kept]
         claims = ca.vertcat(*(_without_modulus(parts[k][2], values[k]) for k in kept))
         gradient = ca.jacobian(claims, model.pose)
 
@@ -137,8 +137,8 @@ class _Claims:
             row = int(np.argmin(np.where(where[:, k], values[:, k], np.inf)))
             s = float(at[row])
             (pose,) = self.path.evaluate(np.array(s), 0)
-            limb, near = self.limbs[k], self.path.waypoint(s)
-            raise PathRefused(self.names[k], s, pose.tolist(), limb, float(values[row, k]), proved, near)
+            place, near = self.places[k], self.path.waypoint(s)
+            raise PathRefused(self.names[k], s, pose.tolist(), place, float(values[row, k]), proved, near)
 
 
 def _steepest(least: Array, most: Array, box: PathBox, count: int) -> Array:
@@ -161,16 +161,16 @@ def _without_modulus(part: ca.SX, at_start: float) -> ca.SX:
     return -part.dep(0) if at_start < 0.0 else part.dep(0)
 
 
-def _margins(robot: Mechanism) -> list[tuple[str, int | None, ca.SX]]:
-    """Name, limb and expression of each margin that a path must keep; a component that is the lower of two counts
+def _margins(robot: Mechanism) -> list[tuple[str, str | None, ca.SX]]:
+    """Name, place and expression of each margin that a path must keep; a component that is the lower of two counts
     twice."""
     measure = Measure(robot.fvi_bounds, robot.characteristic_length)
-    found: list[tuple[str, int | None, ca.SX]] = []
+    found: list[tuple[str, str | None, ca.SX]] = []
     for name, margin in robot.margins.items():
         if margin.holds_on_paths:
             components = margin.components(robot, measure)
             count = components.numel()
-            limbs: Sequence[int | None] = margin.limbs(robot) or [None] * count
-            for limb, component in zip(limbs, ca.vertsplit(components), strict=True):
-                found += [(name, limb, side) for side in sides(component)]
+            places: Sequence[str | None] = margin.places(robot) or [None] * count
+            for place, component in zip(places, ca.vertsplit(components), strict=True):
+                found += [(name, place, side) for side in sides(component)]
     return found

@@ -16,7 +16,18 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.errors import InvalidShape
-from kinematics.machine import TURN, Bodies, LimbStatics, Member, Particle, PassiveJoint, Rotor, Tube, shared_joints
+from kinematics.machine import (
+    TURN,
+    Bodies,
+    LimbStatics,
+    Member,
+    Particle,
+    PassiveJoint,
+    Rotor,
+    Tube,
+    platform,
+    shared_joints,
+)
 from kinematics.margins import ANGLE_ACCURACY, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.model import FviBounds, Mechanism, Mode, Model, by_name
 from kinematics.robots.gough_stewart.forward import ForwardSolution, assembly_modes, matched_pose
@@ -271,6 +282,12 @@ class GoughStewart(SixLegs):
             rod_statics(members[i : i + 1], self.structure, wrenches[:, i], along[:, i], joints[i], efforts[:, i])
             for i in range(6)
         ]
+
+    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
+        """The base: a plate, or bars to the legs' joints if these are not in one plane."""
+        numbers = np.array(self.geometry.base_points)
+        shapes = platform(self.base_points(g), numbers, g.plate_thickness)
+        return [Member("base", ("base", *shared_joints("A", numbers)), "", shapes)]
 
     @staticmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:  # noqa: ARG004

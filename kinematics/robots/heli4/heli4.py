@@ -31,6 +31,7 @@ from kinematics.robots.shared import (
     height_in_reach,
     limb_members,
     means_and_differences,
+    motors,
     outline,
     radial_directions,
     studs,
@@ -56,6 +57,7 @@ class Heli4(PairedArms):
     rotations = (3,)
     counts_turns = True
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=150.0)
+    tool_member = "lower plate"
     margins = by_name(
         *STANDARD, ANGLE_ACCURACY, ROTATIONAL_STIFFNESS, INTERNAL_DETERMINANT, INTERNAL_STIFFNESS, PASSIVE_JOINT
     )
@@ -135,6 +137,10 @@ class Heli4(PairedArms):
             middle = Tube(ends[:, first], ends[:, first + 1], radius, radius)
             plates.append(Member(name, joints_of, "plate", (middle, *axles)))
         return limb_members(cls, pose, joints, g, g.parallelogram_width) + plates
+
+    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
+        """The motors."""
+        return motors(self.limbs(g), g)
 
     @staticmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:

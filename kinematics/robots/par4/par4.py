@@ -37,6 +37,7 @@ from kinematics.robots.shared import (
     height_in_reach,
     limb_members,
     means_and_differences,
+    motors,
     radial_directions,
     studs,
 )
@@ -67,6 +68,8 @@ class Par4Geometry(HalvesGeometry):
     rod_radius: float = length(0.006, doc="of the rods' tubes, outside")
     rod_wall: float = length(0.0015, doc="of the rods' tubes")
     bar_thickness: float = length(0.012, doc="of the platform's halves and bars")
+    motor_radius: float = length(0.040, doc="of the motors")
+    motor_length: float = length(0.080, doc="of the motors along their axes, without their round ends")
     amplification: float = ratio(4.0, doc="k, turns of the tool a turn of the bars; 1 without a gear")
 
 
@@ -107,6 +110,7 @@ class Par4(PairedArms):
     rotations = (3,)
     counts_turns = True  # of the bars, by the gear
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
+    tool_member = "half 1"
     margins = by_name(
         *STANDARD,
         ANGLE_ACCURACY,
@@ -204,6 +208,10 @@ class Par4(PairedArms):
             axles = [Tube(held[:, 2 * i], held[:, 2 * i + 1], thick, thick) for i in limbs]
             platform.append(Member(name, (name, *(f"B{i + 1}" for i in limbs)), "plate", (*spokes, *axles)))
         return limb_members(cls, pose, joints, g, g.parallelogram_width) + platform
+
+    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
+        """The motors."""
+        return motors(self.limbs(g), g)
 
     @classmethod
     def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:

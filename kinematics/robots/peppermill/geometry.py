@@ -28,6 +28,7 @@ class PeppermillGeometry(GeometryRecord):
     link_wall: float = length(0.002, doc="of both limbs' links")
     nut_spacing: float = length(0.30, doc="between the nuts at theta = 0; not in the paper, whose nuts coincide there")
     screw_radius: float = length(0.010, doc="of the platform's screws")
+    column_radius: float = length(0.020, doc="of the drive columns; not in the paper")
     drive_pitch: float = screw_pitch(0.10, doc="p_c, of the drives' screws")
 
     def __post_init__(self) -> None:

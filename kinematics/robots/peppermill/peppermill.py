@@ -64,6 +64,7 @@ class Peppermill(Mechanism):
     counts_turns = True
     # 750 W servos at 3000 rpm and three times their rated torque; 2.5 m/s and 50 N are wanted. All are our assumptions.
     fvi_bounds = FviBounds(joint_speed=314.0, joint_effort=7.2, speed=2.5, force=50.0)
+    tool_member = "screws"
     margins = by_name(*STANDARD, ANGLE_ACCURACY, ROTATIONAL_STIFFNESS, INTERNAL_STIFFNESS, PASSIVE_JOINT)
 
     @property
@@ -216,6 +217,16 @@ class Peppermill(Mechanism):
         nuts = ca.repmat(pose[:3], 1, 2) + _E_Z @ (g.pitches.T / TURN * pose[3])
         return origins, carriages, carriages + proximal, nuts
 
+    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+        """The drive columns, as long as the carriages' ranges. A column without a range is left out."""
+        origins, limits = self.points(pose, joints, g)[0] + _nuts_apart(g), self.ranges.limits(4)
+        along = ca.DM([[1, 0], [0, 1], [0, 0]])
+        found = []
+        for i in np.flatnonzero(np.isfinite(limits[:2]).all(axis=1)).tolist():
+            start, end = (origins[:, i] + limit * along[:, i] for limit in limits[i])
+            found.append(bar(f"column {i + 1}", ("base", f"carriage {i + 1}"), "", start, end, g.column_radius))
+        return found
+
     link_tree = links
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
@@ -252,7 +263,7 @@ class Peppermill(Mechanism):
         The paper's nuts coincide at theta = 0. Limb 1 is moved down and limb 2 up, by half of `nut_spacing` each: the
         same machine with its drive axes further apart.
         """
-        apart = _E_Z @ (g.nut_spacing / 2 * ca.DM([[-1, 1]]))
+        apart = _nuts_apart(g)
         carriages, elbows, nuts = (points + apart for points in cls.points(pose, joints, g)[1:])
         return carriages, elbows, nuts
 
@@ -309,6 +320,12 @@ def _inverse_modes(_: Peppermill, model: Model) -> list[ca.SX]:
 
 def _forward_modes(_: Peppermill, model: Model) -> Build:
     return [model.joints], [ca.horzcat(*(limbs.pose_of_joints(model.joints, s, model.g) for s in limbs.SIDES)).T]
+
+
+def _nuts_apart(g: SimpleNamespace) -> ca.SX:
+    """(3, 2) how far each limb is moved, so that the nuts do not coincide at theta = 0."""
+    result: ca.SX = _E_Z @ (g.nut_spacing / 2 * ca.DM([[-1, 1]]))
+    return result
 
 
 def _link(start: ca.SX, end: ca.SX, g: SimpleNamespace) -> Tube:

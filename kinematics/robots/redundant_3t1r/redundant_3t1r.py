@@ -40,7 +40,7 @@ from kinematics.robots.redundant_3t1r.geometry import (
     Redundant3T1RGeometry,
     Redundant3T1RRanges,
 )
-from kinematics.robots.redundant_3t1r.members import members
+from kinematics.robots.redundant_3t1r.members import base_members, members
 from kinematics.robots.redundant_3t1r.singularities import ParallelSingularity, parallel_conditions
 from kinematics.robots.redundant_3t1r.statics import statics
 from kinematics.robots.shared import INTERNAL_DETERMINANT, SIDES, RodLevel, outline
@@ -227,6 +227,7 @@ class Redundant3T1R(RodLevel):
 
     members = members
     statics = statics
+    base_members = base_members
 
     def arm_clearance(self, pose: Array, rods: bool = False) -> Array:
         """(...,) the smallest of `arm_distances` [m], between axes: subtract the arms' thickness."""
