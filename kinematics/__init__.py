@@ -80,7 +80,7 @@ from kinematics.model import (
     continued,
     sides,
 )
-from kinematics.multibody import mjcf
+from kinematics.multibody import mjcf, swept_box
 from kinematics.printed_bounds import rounded_down, rounded_up
 from kinematics.robots import MECHANISMS, Delta, Hexa
 from kinematics.robots.gough_stewart import GoughStewart, LostPaths, SelfMotion, SingularArchitecture
@@ -179,6 +179,7 @@ __all__ = [
     "rounded_up",
     "run_through",
     "sides",
+    "swept_box",
     "to_actuators",
     "tool_stiffness",
     "torques",

@@ -27,6 +27,16 @@ class Tube(NamedTuple):
     wall: ca.SX
 
     @property
+    def corners(self) -> ca.SX:
+        """(3, 2) its ends, of which all of its points are within `around` of the hull."""
+        return ca.horzcat(self.start, self.end)
+
+    @property
+    def around(self) -> ca.SX:
+        """[m]"""
+        return self.radius
+
+    @property
     def area(self) -> ca.SX:
         """Of the section [m^2]."""
         return math.pi * self.wall * (2 * self.radius - self.wall)
@@ -42,6 +52,16 @@ class Plate(NamedTuple):
 
     outline: ca.SX
     thickness: ca.SX
+
+    @property
+    def corners(self) -> ca.SX:
+        """(3, k) of the hull that all of its points are within `around` of."""
+        return self.outline
+
+    @property
+    def around(self) -> ca.SX:
+        """[m]"""
+        return self.thickness / 2
 
 
 class Member(NamedTuple):

@@ -198,7 +198,7 @@ def report(
     from studies.cli.run_console import print_outcome
     from studies.committed import committed_certificates
     from studies.results import report_names, write_report
-    from studies.stages import certified, run
+    from studies.stages import certified, run, with_unasked
     from studies.study_file import told_at_key
 
     file, asked, drives = load(study, allow_code, seconds=seconds)
@@ -207,7 +207,7 @@ def report(
     folder = output_folder(out or Path("out") / asked.name, names, force)
     known = committed_certificates(asked, file.path.parent, robot)
     with told_at_key(file), console.progress() as tell:
-        outcome = certified(run(asked, robot, tell), known, tell)
+        outcome = certified(with_unasked(run(asked, robot, tell), tell), known, tell)
     print_outcome(outcome, write_report(outcome, folder, f"linkwright report {study}"), json)
 
 

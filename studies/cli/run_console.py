@@ -8,7 +8,7 @@ from studies.cli.console import files_data, print_files, print_json, print_table
 from studies.cli.proof_console import proof_data
 from studies.report import FRAME, MEMBERS, PROOFS, frame_rows, margin_columns, margin_rows, member_rows, proof_rows
 from studies.results import Written
-from studies.stages import Outcome, Timing
+from studies.stages import Outcome, Timing, became_worse
 from trajectory.drive_files import FORMATS
 
 
@@ -19,6 +19,10 @@ def print_outcome(outcome: Outcome, written: Written, as_json: bool) -> None:
         return
     sampled = next(iter(outcome.worst.values())).sampled
     print_table(f"Worst over the region ({sampled} poses and descents)", margin_columns(outcome), margin_rows(outcome))
+    if worse := became_worse(outcome):
+        print_table(
+            f"Worse than the {outcome.before}, and not asked about", ("",), [(str(change),) for change in worse]
+        )
     if outcome.proofs:
         print_table("Proofs over the region", PROOFS, proof_rows(outcome.proofs))
     changed = outcome.problem.robot.geometry.as_dict()
@@ -102,6 +106,9 @@ def _outcome_data(outcome: Outcome, written: Written) -> dict[str, Any]:
         "geometry": outcome.robot.geometry.as_dict(),
         "worst": {m: {"value": w.value, "pose": w.pose.tolist()} for m, w in outcome.worst.items()},
         "prototype": {m: w.value for m, w in outcome.prototype.items()} if outcome.prototype else None,
+        "unasked": {m: {"value": w.value, "pose": w.pose.tolist()} for m, w in outcome.unasked.items()},
+        "unasked_before": {m: w.value for m, w in outcome.unasked_before.items()} if outcome.unasked_before else None,
+        "became_worse": [str(change) for change in became_worse(outcome)],
         "active": outcome.active,
         "region": repr(outcome.region),
         "rounds": [vars(r) for r in outcome.synthesis.rounds] if outcome.synthesis else [],

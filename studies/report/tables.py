@@ -32,16 +32,22 @@ def margin_rows(outcome: Outcome) -> list[tuple[str, ...]]:
     if outcome.study.optimise:
         size = "large" if outcome.problem.good(1.0) > 0.0 else "small"
         wanted.setdefault(outcome.problem.objective, f"as {size} as possible")
+    before = (outcome.prototype or {}) | (outcome.unasked_before or {})
+    units = {name: f" [{margin.unit}]" if margin.unit else "" for name, margin in outcome.robot.margins.items()}
     return [
         (
-            margin,
+            margin + units[margin],
             wanted.get(margin, ""),
-            f"{outcome.prototype[margin].value:.6f}" if outcome.prototype else "",
-            f"{worst.value:.6f}",
+            _figure(before[margin].value) if margin in before else "",
+            _figure(worst.value),
             shown_pose(worst.pose),
         )
-        for margin, worst in outcome.worst.items()
+        for margin, worst in (outcome.worst | outcome.unasked).items()
     ]
+
+
+def _figure(value: float) -> str:
+    return f"{value:.6f}" if 1e-3 <= abs(value) < 1e4 or not value else f"{value:.6g}"
 
 
 def frame_rows(timing: Timing) -> list[tuple[str, ...]]:

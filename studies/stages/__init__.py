@@ -7,6 +7,7 @@ from studies.stages.map_stage import MapOutcome, run_map, unit_of
 from studies.stages.pipeline import GIVEN, Outcome, certified, designed, run, with_cycle
 from studies.stages.proofs import Claim, Proof, Question, claims_of, prove_claims, question_of
 from studies.stages.timed_stage import Lasting, Progress, stage
+from studies.stages.unasked import became_worse, with_unasked
 
 __all__ = [
     "GIVEN",
@@ -23,6 +24,7 @@ __all__ = [
     "Timing",
     "agrees",
     "angles_of",
+    "became_worse",
     "certified",
     "claims_of",
     "designed",
@@ -40,4 +42,5 @@ __all__ = [
     "time_cycle",
     "unit_of",
     "with_cycle",
+    "with_unasked",
 ]

@@ -33,6 +33,7 @@ class Outcome:
         on_cycle: the worst value of each requirement's margin on the cycle; empty without a cycle.
         timing: the timed cycle; None if the study asks for none.
         prototype_timing: the cycle of the study's own geometry, to compare with; None if there is none.
+        unasked, unasked_before: as `worst` and `prototype`, of the margins that the study did not ask about.
         proofs: the answers to the claims; empty before that stage.
     """
 
@@ -47,6 +48,8 @@ class Outcome:
     on_cycle: dict[str, float] = field(default_factory=dict)
     timing: Timing | None = None
     prototype_timing: Timing | None = None
+    unasked: dict[str, WorstPoses] = field(default_factory=dict)
+    unasked_before: dict[str, WorstPoses] | None = None
     proofs: tuple[Proof, ...] = ()
 
     @property
