@@ -40,7 +40,19 @@ from kinematics.evaluation import (
     over_spans,
     run_through,
 )
-from kinematics.machine import UNIFORM, DriveTrain, FieldKind, GeometryRecord, InertiaRecord, JointRanges, kind_of
+from kinematics.machine import (
+    MATERIALS,
+    UNIFORM,
+    DriveTrain,
+    FieldKind,
+    GeometryRecord,
+    InertiaRecord,
+    JointRanges,
+    Load,
+    Material,
+    Structure,
+    kind_of,
+)
 from kinematics.margins import CLEARANCE, INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
@@ -72,6 +84,7 @@ __all__ = [
     "CORES",
     "INTERNAL_STIFFNESS",
     "LENGTHS",
+    "MATERIALS",
     "MECHANISMS",
     "PASSIVE_JOINT",
     "ROTATIONAL_STIFFNESS",
@@ -99,8 +112,10 @@ __all__ = [
     "JointMotion",
     "JointRanges",
     "LinkwrightError",
+    "Load",
     "LostPaths",
     "Margin",
+    "Material",
     "Measure",
     "Mechanism",
     "Model",
@@ -114,6 +129,7 @@ __all__ = [
     "Redundant3T1R",
     "SelfMotion",
     "SingularArchitecture",
+    "Structure",
     "ToShow",
     "UnreachablePose",
     "Value",

@@ -87,6 +87,7 @@ class Margin(ABC):
         of_jacobians: whether it depends only on J_x and |J_q|, so that a mirror that keeps these keeps it.
         beyond_reach: whether it has a value even where a limb cannot reach.
         singularity: the kind of singularity where it is 0; empty if it shows none.
+        records: the robot's records that it depends on, besides geometry and ranges: inertia, structure, load.
     """
 
     name: ClassVar[str]
@@ -96,6 +97,7 @@ class Margin(ABC):
     of_jacobians: ClassVar[bool] = False
     beyond_reach: ClassVar[bool] = False
     singularity: ClassVar[str] = ""
+    records: ClassVar[tuple[str, ...]] = ()
 
     @abstractmethod
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import casadi as ca
 
 from kinematics.machine import Beam, Cut, LimbStatics, Member, Section, Structure, Tube, rod_cut
-from kinematics.robots.shared.limb_members import SIDES
+from kinematics.robots.shared.arm_and_rod_members import SIDES
 
 if TYPE_CHECKING:
     from kinematics.robots.shared.rotary_limbs import RotaryLimbs
