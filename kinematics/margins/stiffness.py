@@ -111,12 +111,14 @@ class _Directional(WeakestDirection):
         """The freedoms that are free, and those whose stiffness is asked for; all others are held."""
 
     def pencil(self, robot: Mechanism) -> Pencil | None:
-        """With the unit matrix as weight."""
+        """With the unit matrix as weight; None also if the robot has no such freedom."""
         found = transmission_at_pose(robot)
         if found is None:
             return None
         wrenches, compliance = found
         free, asked = self.directions(robot, wrenches.shape[0])
+        if not asked:
+            return None
         return Pencil(wrenches[free + asked, :], compliance, ca.SX.eye(len(asked)))
 
 
