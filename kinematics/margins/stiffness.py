@@ -13,11 +13,11 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.dynamics import stiffness_symbolic, transmission_at_pose
-from kinematics.mathematics import row_sums, smallest_eigenvalue
+from kinematics.mathematics import near_inverse, row_sums, smallest_eigenvalue
 from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
 
 _SURE = 1e-9  # by what a row sum, about 1 in the middle of a box, must be above 0
-_ITERATIONS = 8
+_ITERATIONS = 8  # of the power method
 
 
 class Pencil(NamedTuple):
@@ -35,17 +35,22 @@ class Pencil(NamedTuple):
 
     def smallest(self) -> ca.SX:
         """x."""
-        return smallest_eigenvalue(stiffness_symbolic(self.wrenches, self.compliance), self.weight)
+        return smallest_eigenvalue(self.stiffness, self.weight)
 
-    def shifted(self, x: ca.SX, free: ca.SX) -> ca.SX:
-        """diag(0, x E) (f, f), less `free`: K for K - x diag(0, E)."""
+    @property
+    def stiffness(self) -> ca.SX:
+        """K."""
+        return stiffness_symbolic(self.wrenches, self.compliance)
+
+    def whole_weight(self) -> ca.SX:
+        """diag(0, E) (f, f)."""
         rest = self.wrenches.shape[0] - self.weight.shape[0]
-        return free - x * ca.diagcat(ca.SX(rest, rest), self.weight)
+        return ca.diagcat(ca.SX(rest, rest), self.weight)
 
     def balance(self, x: ca.SX) -> ca.SX:
         """(k + f, k + f) [[-C, W^T], [W, -x diag(0, E)]]: forces and motions in balance. It needs no inverse of C."""
-        below = self.shifted(x, ca.SX(*[self.wrenches.shape[0]] * 2))
-        return ca.vertcat(ca.horzcat(-self.compliance, self.wrenches.T), ca.horzcat(self.wrenches, below))
+        above = ca.horzcat(-self.compliance, self.wrenches.T)
+        return ca.vertcat(above, ca.horzcat(self.wrenches, -x * self.whole_weight()))
 
 
 class WeakestDirection(Margin):
@@ -76,7 +81,7 @@ class WeakestDirection(Margin):
         if pencil is None:
             return super().to_refute(robot, claim)
         x = self.eigenvalue(ca.fmax(claim.bound, 0))  # a bound below 0 holds; its square would not say so
-        matrix = pencil.shifted(x, stiffness_symbolic(pencil.wrenches, pencil.compliance))
+        matrix = pencil.stiffness - x * pencil.whole_weight()
         v = ca.SX.sym("scaling", matrix.shape[0], 1)
         return ToShow(v.T @ matrix @ v, v, matrix, _weakest)
 
@@ -108,12 +113,14 @@ class _Directional(WeakestDirection):
         """The freedoms that are free, and those whose stiffness is asked for; all others are held."""
 
     def pencil(self, robot: Mechanism) -> Pencil | None:
-        """With the unit matrix as weight."""
+        """With the unit matrix as weight; None also if the robot has no such freedom."""
         found = transmission_at_pose(robot)
         if found is None:
             return None
         wrenches, compliance = found
         free, asked = self.directions(robot, wrenches.shape[0])
+        if not asked:
+            return None
         return Pencil(wrenches[free + asked, :], compliance, ca.SX.eye(len(asked)))
 
 
@@ -168,7 +175,7 @@ def _preconditioner(matrices: Array) -> Array:
     eye = np.eye(matrices.shape[1])
     matrices = np.where(usable[:, None, None], matrices, eye)
     size = np.sqrt(np.abs(matrices).max(axis=2))  # symmetric, so that rows and columns alike are divided by it
-    inverse = np.linalg.pinv(matrices / size[:, :, None] / size[:, None, :]) / size[:, :, None] / size[:, None, :]
+    inverse = near_inverse(matrices / size[:, :, None] / size[:, None, :]) / size[:, :, None] / size[:, None, :]
     spread, weight = np.abs(inverse) @ np.abs(matrices), 1 / size
     for _ in range(_ITERATIONS):
         weight = (spread @ weight[:, :, None])[:, :, 0]

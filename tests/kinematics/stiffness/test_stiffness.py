@@ -178,6 +178,24 @@ def test_what_a_load_does_is_what_drives_and_members_store(name: str) -> None:
         assert 0.0 < stored < load @ moved / 2
 
 
+@pytest.mark.parametrize("name", ["Heli4", "Hexa", "Peppermill", "Planar3RRR"])
+def test_both_ends_of_a_member_are_in_balance(name: str) -> None:
+    """The moments at its two cuts differ by the force at the other end."""
+    machine, model = robot(name), robot(name).model()
+    (pose,) = poses(machine, 1, seed=9)
+    members = {m.name: m.shapes[0] for m in machine.members(model.pose, model.joints, model.g)}
+    cuts = [cut for cut in transmission(machine).cuts if not cut.member.startswith("rod")]
+    count = 4 if name == "Peppermill" else len(machine.joint_names)
+    assert len(cuts) == 2 * count
+    for root, tip in zip(cuts[::2], cuts[1::2], strict=True):
+        tube = members[root.member]
+        gap = root.moment - tip.moment - ca.skew(tube.end - tube.start) @ tip.force
+        function = ca.Function("gap", [model.pose, model.joints, model.geometry], [gap, root.moment])
+        found, size = map(np.array, function(pose, machine.inverse(pose), machine.geometry.vector()))
+        assert root.member == tip.member
+        assert np.abs(found).max() < 1e-14 * max(np.abs(size).max(), 1.0), "seed 9"
+
+
 def _numbers(machine: Mechanism):
     _, g = machine.Geometry.symbols()
     for f in fields(machine.geometry):
