@@ -38,7 +38,7 @@ from kinematics.evaluation import (
     run_through,
 )
 from kinematics.machine import UNIFORM, DriveTrain, FieldKind, GeometryRecord, InertiaRecord, JointRanges, kind_of
-from kinematics.margins import ANGLE_ACCURACY, CLEARANCE, PASSIVE_JOINT, STANDARD
+from kinematics.margins import ANGLE_ACCURACY, CLEARANCE, PASSIVE_JOINT, STANDARD, largest_errors
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
 from kinematics.model import (
@@ -131,6 +131,7 @@ __all__ = [
     "is_length",
     "joint_motion",
     "kind_of",
+    "largest_errors",
     "loop_mobility",
     "mjcf",
     "mobility_of_identical_chains",
