@@ -24,8 +24,8 @@ def margin_rows(outcome: Outcome) -> list[tuple[str, ...]]:
         (
             margin,
             wanted.get(margin, ""),
-            f"{outcome.prototype[margin].value:.6f}" if outcome.prototype else "",
-            f"{worst.value:.6f}",
+            f"{outcome.prototype[margin].value:.6g}" if outcome.prototype else "",
+            f"{worst.value:.6g}",
             shown_pose(worst.pose),
         )
         for margin, worst in outcome.worst.items()
@@ -40,7 +40,7 @@ def proof_rows(proofs: Sequence[Proof]) -> list[tuple[str, ...]]:
             proof.certificate.status,
             str(proof.certificate.boxes),
             f"{proof.seconds:.2f}",
-            f"{proof.sampled:.6f}",
+            f"{proof.sampled:.6g}",
             f"{proof.gap:.3g}",
             _where(proof),
         )

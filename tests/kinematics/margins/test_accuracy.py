@@ -195,8 +195,10 @@ def test_the_best_fit_errs_as_linear_programs_say_and_no_less_than_errors_of_lea
     least = largest_errors(robot, poses, "minimum_norm")
     np.testing.assert_allclose(angle, np.abs(np.linalg.pinv(robot.inverse_jacobian(poses))[:, 3]) @ step, rtol=1e-9)
     np.testing.assert_array_equal(position, robot.margin("position_accuracy", poses))
-    assert (least[0] <= position * (1 + 1e-9)).all() and (least[1] <= angle * (1 + 1e-9)).all()
-    assert (least[0] < 0.99 * position).any() and (least[1] < 0.99 * angle).any()
+    assert (least[0] <= position * (1 + 1e-9)).all()
+    assert (least[1] <= angle * (1 + 1e-9)).all()
+    assert (least[0] < 0.99 * position).any()
+    assert (least[1] < 0.99 * angle).any()
 
 
 def test_an_unknown_method_is_named() -> None:
