@@ -64,6 +64,7 @@ from kinematics.margins import (
     PASSIVE_JOINT,
     ROTATIONAL_STIFFNESS,
     STANDARD,
+    largest_errors,
 )
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
@@ -166,6 +167,7 @@ __all__ = [
     "is_length",
     "joint_motion",
     "kind_of",
+    "largest_errors",
     "loop_mobility",
     "mass_matrix",
     "member_forces",

@@ -1,12 +1,13 @@
 """The true error of the tool, not only its first order: a bound of what the first order leaves out.
 
-Let a = C q be the actuators, J = da / d pose, and p the pose where the actuators are off by e, |e_i| <= E_i. On the line
-from the pose p0 to p = p0 + t the inverse model gives e = (J(p0) + D) t. With |t_k| <= d_k and H_ijk the largest
+Let a = C q be the actuators, J = da / d pose, and p the pose where the actuators are off by e, |e_i| <= E_i. On the
+line from the pose p0 to p = p0 + t the inverse model gives e = (J(p0) + D) t. With |t_k| <= d_k and H_ijk the largest
 |dJ_ij / d pose_k| around, |D_ij| <= N_ij = sum_k H_ijk d_k / 2. So t is the first order J(p0)^-1 e and no more than
 |J(p0)^-1| N |t| beside it. If that gives |t| < d, and J has no singularity as far as d, then t follows e from 0 without
 leaving d: such a pose exists, and it is the one that the robot takes.
 
-With more encoders than freedoms t is the error of the best fit, J(p)^T (a(p) - a(p0) - e) = 0, and J changes in J^T too.
+With more encoders than freedoms t is the error of the best fit, J(p)^T (a(p) - a(p0) - e) = 0. There J changes in J^T
+too.
 
 All bounds over boxes of poses are interval arithmetic; sums and products of them are made larger by `_UP`.
 """
@@ -64,7 +65,7 @@ def nonlinear_error(
         raise InvalidValue(f"{type(robot).__name__} pose", "Euler angles", "a robot with at most one rotation")
     if robot.structure.joint_play:
         raise InvalidValue("joint_play", robot.structure.joint_play, "0: the bound is for the actuators' errors alone")
-    bounds, most = _Bounds(robot), whole("most_boxes", most_boxes, 1)
+    bounds, most = _Bounds(robot, region.extent(robot.pose_names)), whole("most_boxes", most_boxes, 1)
     stack, worst, count = [root(region, robot.pose_names)], np.zeros(2), 0
     while stack:
         low, high = stack.pop()
@@ -94,7 +95,7 @@ class _Bounds:
         lengths, angles: places of the coordinates in a pose.
     """
 
-    def __init__(self, robot: Mechanism) -> None:
+    def __init__(self, robot: Mechanism, extent: Array) -> None:
         model = robot.model()
         jacobian, n = model.actuator_jacobian, len(robot.pose_names)
         self._shape = jacobian.shape
@@ -105,14 +106,14 @@ class _Bounds:
             for rows in (_listed(jacobian), _listed(slopes))
         )
         self._errors = robot.inertia.drive_train.position_errors(self._shape[0])
-        self._extent = robot.pose_units()
+        self._extent = np.where(extent > 0.0, extent, 1.0)
         self.angles = list(robot.rotations)
         self.lengths = [k for k in range(n) if k not in robot.rotations]
 
     @np.errstate(invalid="ignore", over="ignore")  # of numbers that are infinite, as they are unknown
     def rest(self, low: Array, high: Array) -> tuple[Array, Array, Array]:
         """(k, n) what the first order leaves out, inf if unknown; and two estimates: (k, n) the first order in the
-        middle, (k, n) how much each coordinate's width spreads J, or the widths themselves.
+        middle, (k, n) how much each coordinate's width spreads J, or the widths over the region's.
         """
         m, n = self._shape
         point = 0.5 * (low + high)

@@ -6,6 +6,7 @@ from kinematics.margins.condition import INVERSE_CONDITION_NUMBER
 from kinematics.margins.force_capability import FORCE_CAPABILITY
 from kinematics.margins.isotropic import F_W, FVI, V_W
 from kinematics.margins.joint_travel import JOINT_TRAVEL
+from kinematics.margins.largest_errors import largest_errors
 from kinematics.margins.mass import MASS
 from kinematics.margins.natural_frequency import NATURAL_FREQUENCY
 from kinematics.margins.parallel import DET_J_X
@@ -35,4 +36,12 @@ STANDARD = (
     POSITION_ACCURACY,
 )
 
-__all__ = ["ANGLE_ACCURACY", "CLEARANCE", "INTERNAL_STIFFNESS", "PASSIVE_JOINT", "ROTATIONAL_STIFFNESS", "STANDARD"]
+__all__ = [
+    "ANGLE_ACCURACY",
+    "CLEARANCE",
+    "INTERNAL_STIFFNESS",
+    "PASSIVE_JOINT",
+    "ROTATIONAL_STIFFNESS",
+    "STANDARD",
+    "largest_errors",
+]

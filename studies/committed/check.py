@@ -89,20 +89,25 @@ def _within_bounds(problem: Problem, robot: Mechanism) -> list[Row]:
 
 
 def _requirements(study: Study, outcome: Outcome) -> list[Row]:
-    """Check the requirements over the region and on the cycle, the limits, and the gain over the study's geometry."""
+    """Check the requirements over the region and on the cycle, the limits, and the gain over the study's geometry.
+
+    A study's geometry that breaks a requirement may be better in the objective, so there is no gain to check then.
+    """
     rows = []
     for r in outcome.problem.requirements:
         worst = outcome.worst[r.margin]
         rows.append(keeps(f"required {r.margin}", r.bound, worst.value, worst.pose.tolist()))
         if r.margin in outcome.on_cycle:
             rows.append(keeps(f"required {r.margin} on the cycle", r.bound, outcome.on_cycle[r.margin], None))
-    if study.optimise is not None and outcome.prototype is not None:
+    own = outcome.prototype
+    keeps_all = own is not None and all(r.bound.room(own[r.margin].value) >= 0.0 for r in outcome.problem.requirements)
+    if study.optimise is not None and own is not None and keeps_all:
         name = outcome.problem.objective
         worst = outcome.worst[name]
         rows.append(
             keeps(
                 f"{name} is no worse than the study's own geometry",
-                Bound(outcome.prototype[name].value, outcome.robot.margins[name].sense),
+                Bound(own[name].value, outcome.robot.margins[name].sense),
                 worst.value,
                 worst.pose,
             )

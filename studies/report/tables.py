@@ -74,7 +74,7 @@ def proof_rows(proofs: Sequence[Proof]) -> list[tuple[str, ...]]:
             proof.certificate.status,
             str(proof.certificate.boxes),
             f"{proof.seconds:.2f}",
-            f"{proof.sampled:.6f}",
+            f"{proof.sampled:.6g}",
             f"{proof.gap:.3g}",
             _where(proof),
         )
