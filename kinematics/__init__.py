@@ -37,8 +37,19 @@ from kinematics.evaluation import (
     over_spans,
     run_through,
 )
-from kinematics.machine import UNIFORM, DriveTrain, FieldKind, GeometryRecord, InertiaRecord, JointRanges, kind_of
-from kinematics.margins import CLEARANCE, PASSIVE_JOINT, STANDARD
+from kinematics.machine import (
+    UNIFORM,
+    DriveTrain,
+    FieldKind,
+    GeometryRecord,
+    InertiaRecord,
+    JointRanges,
+    Obstacle,
+    PayloadHull,
+    Surroundings,
+    kind_of,
+)
+from kinematics.margins import CLEARANCE, PASSIVE_JOINT, STANDARD, hull_depth, lowest_of_base
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
 from kinematics.model import (
@@ -99,8 +110,10 @@ __all__ = [
     "Measure",
     "Mechanism",
     "Model",
+    "Obstacle",
     "Op",
     "Par4",
+    "PayloadHull",
     "Peppermill",
     "Planar3PRR",
     "Planar3RPR",
@@ -109,6 +122,7 @@ __all__ = [
     "Redundant3T1R",
     "SelfMotion",
     "SingularArchitecture",
+    "Surroundings",
     "ToShow",
     "UnreachablePose",
     "Value",
@@ -124,11 +138,13 @@ __all__ = [
     "finite",
     "friction",
     "from_actuators",
+    "hull_depth",
     "inverse_dynamics",
     "is_length",
     "joint_motion",
     "kind_of",
     "loop_mobility",
+    "lowest_of_base",
     "mjcf",
     "mobility_of_identical_chains",
     "over_spans",

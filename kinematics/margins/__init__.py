@@ -9,6 +9,7 @@ from kinematics.margins.parallel import DET_J_X
 from kinematics.margins.passive_joint import PASSIVE_JOINT
 from kinematics.margins.reach import REACH
 from kinematics.margins.serial import DET_J_Q, J_Q
+from kinematics.margins.solids import hull_depth, lowest_of_base
 
 # What every mechanism has.
 STANDARD = (
@@ -25,4 +26,4 @@ STANDARD = (
     DET_J_X,
 )
 
-__all__ = ["CLEARANCE", "PASSIVE_JOINT", "STANDARD"]
+__all__ = ["CLEARANCE", "PASSIVE_JOINT", "STANDARD", "hull_depth", "lowest_of_base"]

@@ -22,6 +22,7 @@ from kinematics import (
 )
 from studies.building.hardware import inertia_of, ranges_of
 from studies.building.inside_region import leaving
+from studies.building.surroundings import surroundings_of
 from studies.errors import HomeOutOfReach, StudyError
 from studies.study_file import (
     ApproachTable,
@@ -42,7 +43,7 @@ OBJECTIVE = "fvi"
 
 
 def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
-    """The robot with the study's masses and joint ranges; `geometry` replaces the study's own geometry."""
+    """The robot with the study's masses, ranges and surroundings; `geometry` replaces the study's own geometry."""
     kind = study.mechanism_class
     joints = None if study.home is None else study.home.joints
     return kind(
@@ -51,6 +52,7 @@ def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
         ranges_of(study),
         home=_home_pose(study, kind.pose_names),
         home_joints=joints,
+        surroundings=surroundings_of(study),
     )
 
 

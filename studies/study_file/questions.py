@@ -16,7 +16,19 @@ if TYPE_CHECKING:
     from studies.study_file.study import Study
 
 DESIGN = frozenset(
-    ("mechanism", "code", "geometry", "ranges", "region", "home", "fvi", "optimise", "dense_sample", "requirement")
+    (
+        "mechanism",
+        "code",
+        "geometry",
+        "ranges",
+        "surroundings",
+        "region",
+        "home",
+        "fvi",
+        "optimise",
+        "dense_sample",
+        "requirement",
+    )
 )
 CYCLE = frozenset(("inertia", "trajectory"))
 _NO_MATTER = {"trajectory": {"files": True, "drive": True, "path": {"file": True}}}  # they do not change the motion
