@@ -93,7 +93,9 @@ def _requirements(study: Study, outcome: Outcome) -> list[Row]:
     rows = []
     for r in outcome.problem.requirements:
         worst = outcome.worst[r.margin]
-        rows.append(at_least(f"required {r.margin}", r.at_least, worst.value, worst.pose.tolist()))
+        rows.append(
+            at_least(f"required {r.margin}", r.at_least, worst.value, worst.pose.tolist(), outcome.part(r.margin))
+        )
         if r.margin in outcome.on_cycle:
             rows.append(at_least(f"required {r.margin} on the cycle", r.at_least, outcome.on_cycle[r.margin], None))
     if study.optimise is not None and outcome.prototype is not None:

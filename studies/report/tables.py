@@ -25,7 +25,7 @@ def margin_rows(outcome: Outcome) -> list[tuple[str, ...]]:
             wanted.get(margin, ""),
             f"{outcome.prototype[margin].value:.6f}" if outcome.prototype else "",
             f"{worst.value:.6f}",
-            shown_pose(worst.pose),
+            shown_pose(worst.pose, outcome.part(margin)),
         )
         for margin, worst in outcome.worst.items()
     ]
@@ -50,7 +50,7 @@ def proof_rows(proofs: Sequence[Proof]) -> list[tuple[str, ...]]:
 def _where(proof: Proof) -> str:
     certificate = proof.certificate
     if certificate.counterexample is not None:
-        pose = shown_pose(certificate.counterexample)
+        pose = shown_pose(certificate.counterexample, proof.part)
         return pose if certificate.within_reach else f"out of reach: {pose}"
     if len(certificate.left):
         return f"{len(certificate.left)} undecided boxes, one around {shown_pose(certificate.left[0].mean(axis=0))}"

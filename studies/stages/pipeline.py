@@ -59,6 +59,10 @@ class Outcome:
         """What should be proved of this robot."""
         return Question(self.study, self.problem, self.region, self.robot)
 
+    def part(self, margin: str) -> str | None:
+        """The part of the robot that has the worst value of a margin, such as "limb 1"."""
+        return self.question.part(margin, self.worst[margin].pose)
+
     @property
     def active(self) -> list[str]:
         """The constraints that limit the optimum; empty if nothing was optimised."""
@@ -82,14 +86,15 @@ class Outcome:
         for requirement in self.problem.requirements:
             worst = self.worst[requirement.margin]
             if not worst.value >= requirement.at_least:
-                failed.append(Failed(requirement.margin, requirement.at_least, worst.value, tuple(worst.pose.tolist())))
+                name, at, part = requirement.margin, tuple(worst.pose.tolist()), self.part(requirement.margin)
+                failed.append(Failed(name, requirement.at_least, worst.value, at, part=part))
             on_path = self.on_cycle.get(requirement.margin, math.inf)
             if not on_path >= requirement.at_least:
                 failed.append(Failed(f"{requirement.margin} on the cycle", requirement.at_least, on_path, ()))
         for proof in self.proofs:
             if (pose := proof.certificate.counterexample) is not None:
                 name, bound = proof.certificate.margin, proof.certificate.at_least
-                failed.append(Failed(name, bound, proof.sampled, tuple(pose.tolist())))
+                failed.append(Failed(name, bound, proof.sampled, tuple(pose.tolist()), part=proof.part))
         if failed:
             raise RequirementFailed(failed)
 
