@@ -28,6 +28,7 @@ class Clearance(Margin):
     unit = "m"
     words = "distance between the surfaces of the nearest two members that are not joined"
     holds_on_paths = True
+    shown_on_paths = True
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
         """One component for each pair of shapes, and for each shape and what is around it."""
