@@ -88,6 +88,7 @@ class Margin(ABC):
         unit: the unit of its numbers; empty if there is none. `rad or m` depends on the joint.
         words: a description for people.
         holds_on_paths: whether it must be above 0 at every pose of a path.
+        shown_on_paths: whether the proof along a path needs `to_show`, as its components' own bounds are too wide.
         of_jacobians: whether it depends only on J_x and |J_q|, for any robot.
         beyond_reach: whether it has a value even where a limb cannot reach.
         of_members: whether it is the safety factor of the members, of which a cycle's motion has its own too.
@@ -100,6 +101,7 @@ class Margin(ABC):
     unit: ClassVar[str] = ""
     words: ClassVar[str]
     holds_on_paths: ClassVar[bool] = False
+    shown_on_paths: ClassVar[bool] = False
     of_jacobians: ClassVar[bool] = False
     beyond_reach: ClassVar[bool] = False
     of_members: ClassVar[bool] = False

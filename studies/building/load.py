@@ -10,7 +10,8 @@ from pydantic import ValidationError
 from kinematics import InvalidGeometry
 from studies.building.against_mechanism import at_odds, study_table, wrong_words
 from studies.building.mechanisms import MechanismRefused, NamedMechanism, mechanism_named
-from studies.building.objects import path_of
+from studies.building.objects import path_of, robot_of
+from studies.building.surroundings import require_room
 from studies.errors import Fault, KeyPath, StudyError, spelled
 from studies.study_file import Conversion, Finding, Key, Study, Table, TomlFile, WaypointTable, table_of
 from trajectory import InvalidPath, read_waypoints
@@ -60,6 +61,7 @@ def load_study(file: TomlFile, allow_code: bool = False) -> Study:
         key = conversion.spelling.get(("geometry", error.field), ("geometry",))
         raise StudyError([file.fault(key, spelled(file.value(key)), error.expected)]) from error
     _require_thin_walls(study, file, conversion)
+    require_room(robot_of(study), file)
     return _with_waypoints(study, file, conversion, named.mechanism_class.pose_names)
 
 

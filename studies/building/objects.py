@@ -22,6 +22,7 @@ from kinematics import (
 )
 from studies.building.hardware import inertia_of, load_of, ranges_of, structure_of
 from studies.building.inside_region import leaving
+from studies.building.surroundings import surroundings_of
 from studies.errors import HomeOutOfReach, StudyError
 from studies.study_file import (
     ApproachTable,
@@ -43,7 +44,7 @@ FRAME_FILE = "frame_reaction.csv"  # what the machine exerts on its frame, besid
 
 
 def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
-    """The robot with the study's masses and joint ranges; `geometry` replaces the study's own geometry."""
+    """The robot with the study's masses, ranges and surroundings; `geometry` replaces the study's own geometry."""
     kind = study.mechanism_class
     joints = None if study.home is None else study.home.joints
     return kind(
@@ -54,6 +55,7 @@ def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
         home_joints=joints,
         structure=structure_of(study),
         load=load_of(study),
+        surroundings=surroundings_of(study),
     )
 
 

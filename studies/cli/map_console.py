@@ -26,7 +26,7 @@ def print_map(outcome: MapOutcome, written: Written, as_json: bool) -> None:
             "worst in the plane",
             f"{worst:.6g}" if math.isfinite(worst) else "out of reach or singular",
             "",
-            shown_pose(outcome.found.map.worst[1]),
+            shown_pose(outcome.found.map.worst[1], outcome.worst_part),
         ),
     ]
     if figures["area"] == 0.0:

@@ -65,6 +65,7 @@ def proof_data(proof: Proof) -> dict[str, Any]:
         "sampled": proof.sampled,
         "gap": proof.gap,
         "counterexample": None if found.counterexample is None else found.counterexample.tolist(),
+        "part": proof.part,
         "within_reach": found.within_reach,
         "boxes_left": len(found.left),
     }

@@ -104,7 +104,9 @@ def _outcome_data(outcome: Outcome, written: Written) -> dict[str, Any]:
     return {
         "study": outcome.study.name,
         "geometry": outcome.robot.geometry.as_dict(),
-        "worst": {m: {"value": w.value, "pose": w.pose.tolist()} for m, w in outcome.worst.items()},
+        "worst": {
+            m: {"value": w.value, "pose": w.pose.tolist(), "part": outcome.part(m)} for m, w in outcome.worst.items()
+        },
         "prototype": {m: w.value for m, w in outcome.prototype.items()} if outcome.prototype else None,
         "unasked": {m: {"value": w.value, "pose": w.pose.tolist()} for m, w in outcome.unasked.items()},
         "unasked_before": {m: w.value for m, w in outcome.unasked_before.items()} if outcome.unasked_before else None,

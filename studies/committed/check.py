@@ -96,7 +96,7 @@ def _requirements(study: Study, outcome: Outcome) -> list[Row]:
     rows = []
     for r in outcome.problem.requirements:
         worst = outcome.worst[r.margin]
-        rows.append(keeps(f"required {r.margin}", r.bound, worst.value, worst.pose.tolist()))
+        rows.append(keeps(f"required {r.margin}", r.bound, worst.value, worst.pose.tolist(), outcome.part(r.margin)))
         if r.margin in outcome.on_cycle:
             rows.append(keeps(f"required {r.margin} on the cycle", r.bound, outcome.on_cycle[r.margin], None))
     own = outcome.prototype

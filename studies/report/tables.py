@@ -40,7 +40,7 @@ def margin_rows(outcome: Outcome) -> list[tuple[str, ...]]:
             wanted.get(margin, ""),
             _figure(before[margin].value) if margin in before else "",
             _figure(worst.value),
-            shown_pose(worst.pose),
+            shown_pose(worst.pose, outcome.part(margin)),
         )
         for margin, worst in (outcome.worst | outcome.unasked).items()
     ]
@@ -85,7 +85,7 @@ def proof_rows(proofs: Sequence[Proof]) -> list[tuple[str, ...]]:
 def _where(proof: Proof) -> str:
     certificate = proof.certificate
     if certificate.counterexample is not None:
-        pose = shown_pose(certificate.counterexample)
+        pose = shown_pose(certificate.counterexample, proof.part)
         return pose if certificate.within_reach else f"out of reach: {pose}"
     if len(certificate.left):
         return f"{len(certificate.left)} undecided boxes, one around {shown_pose(certificate.left[0].mean(axis=0))}"

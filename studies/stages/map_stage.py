@@ -77,6 +77,14 @@ class MapOutcome:
             "nodes": list(self.found.map.values.shape[::-1]),
         }
 
+    @property
+    def worst_part(self) -> str | None:
+        """The part of the robot that has the worst value in the plane, such as "limb 1"; None if there is no one."""
+        r = self.request
+        if r.index.name not in r.robot.margins:
+            return None
+        return r.robot.margin_place(r.index.name, self.found.map.worst[1], r.fvi_bounds, r.characteristic_length)
+
     def figures(self) -> dict[str, Any]:
         """The numbers, as plain data; `moved` has the change of each in the last refinement."""
         now, before = self.found.figures, self.found.coarser
@@ -91,6 +99,7 @@ class MapOutcome:
             "moved": {name: abs(getattr(now, name) - getattr(before, name)) for name in vars(now)},
             "worst": value,
             "worst_pose": pose.tolist(),
+            "worst_part": self.worst_part,
         }
         if (proof := self.certified) is not None:
             data["certified"] = {

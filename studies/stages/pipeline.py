@@ -62,6 +62,10 @@ class Outcome:
         """What should be proved of this robot."""
         return Question(self.study, self.problem, self.region, self.robot)
 
+    def part(self, margin: str) -> str | None:
+        """The part of the robot that has the worst value of a margin, such as "limb 1"."""
+        return self.question.part(margin, (self.worst | self.unasked)[margin].pose)
+
     @property
     def active(self) -> list[str]:
         """The constraints that limit the optimum; empty if nothing was optimised."""
@@ -86,14 +90,15 @@ class Outcome:
             worst = self.worst[requirement.margin]
             bound = requirement.bound
             if not bound.room(worst.value) >= 0.0:
-                failed.append(Failed(requirement.margin, bound, worst.value, tuple(worst.pose.tolist())))
+                name, at, part = requirement.margin, tuple(worst.pose.tolist()), self.part(requirement.margin)
+                failed.append(Failed(name, bound, worst.value, at, part=part))
             on_path = self.on_cycle.get(requirement.margin, bound.value)
             if not bound.room(on_path) >= 0.0:
                 failed.append(Failed(f"{requirement.margin} on the cycle", bound, on_path, ()))
         for proof in self.proofs:
             if (pose := proof.certificate.counterexample) is not None:
                 name, bound = proof.certificate.margin, proof.certificate.bound
-                failed.append(Failed(name, bound, proof.sampled, tuple(pose.tolist())))
+                failed.append(Failed(name, bound, proof.sampled, tuple(pose.tolist()), part=proof.part))
         if failed:
             raise RequirementFailed(failed)
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from design import Budget, Certificate, Problem, Region, WorstPoses, best_bound, certify, replay, worst_poses
-from kinematics import Bound, InvalidValue, LinkwrightError, Mechanism
+from kinematics import Array, Bound, InvalidValue, LinkwrightError, Mechanism
 from studies.building import problem_of, region_of
 from studies.stages.bound_option import bound_option
 from studies.stages.timed_stage import Progress
@@ -35,11 +35,13 @@ class Proof:
         certificate: the claim, its answer and the boxes behind it.
         sampled: the worst value that a search found; the true worst value is between the proved bound and this.
         seconds: wall-clock time that the answer took.
+        part: the part of the robot that has the lowest value, such as "limb 1"; None if there is no single one.
     """
 
     certificate: Certificate
     sampled: float
     seconds: float
+    part: str | None
 
     @property
     def claim(self) -> str:
@@ -97,6 +99,10 @@ class Question:
         """The worst poses that a dense search finds."""
         return worst_poses(self.robot, self.region, margin, about=self.study.dense_sample, **self.measure)
 
+    def part(self, margin: str, pose: Array) -> str | None:
+        """The part of the robot that has the lowest value of a margin at a pose (n,), such as "limb 1"."""
+        return self.robot.margin_place(margin, pose, *self.measure.values())
+
     def prove(
         self,
         claim: Claim,
@@ -126,7 +132,8 @@ class Question:
             sense = certificate.bound.sense
             found = float(self.robot.margin(claim.margin, certificate.counterexample, *self.measure.values()))
             sampled = -sense * math.inf if math.isnan(found) else sense * min(sense * found, sense * sampled)
-        proof = Proof(certificate, sampled, seconds)
+        pose = worst.pose if certificate.counterexample is None else certificate.counterexample
+        proof = Proof(certificate, sampled, seconds, self.part(claim.margin, pose))
         progress(f"{certificate.status} {proof.claim}: {certificate.boxes} boxes, {seconds:.1f} s")
         return proof
 

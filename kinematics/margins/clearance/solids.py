@@ -16,6 +16,7 @@ from kinematics.model import Mechanism
 
 _BASE = "base"  # the joint of all that does not move
 _HULL = "payload"
+_ROUNDING = 1e-12  # of the robot's size
 _SIDES = 8  # of the polygon around a flat payload
 
 
@@ -105,24 +106,41 @@ def rooms(robot: Mechanism) -> tuple[list[Pair], list[Walled]]:
     return pairs, [Walled(solid, name, walls) for name, walls in _walls(robot) for solid in moving]
 
 
-def hull_and_holder(robot: Mechanism) -> list[Pair]:
-    """The payload's hull and the shapes of the member that carries the tool, which may touch but not intersect."""
+class Lowest(NamedTuple):
+    """The lowest point of the base: the member that it belongs to, and its height [m]."""
+
+    member: str
+    height: float
+
+
+def lowest_of_base(robot: Mechanism) -> Lowest | None:
+    """The lowest point of what belongs to the base, at home; None if the mechanism names no such member."""
+    model = robot.model()
+    solids = [
+        solid for solid in _solids(robot, robot.base_members(model.pose, model.joints, model.g)) if not solid.moves
+    ]
+    if not solids:
+        return None
+    heights = _at_home(robot, [ca.mmin(solid.core.corners[2, :]) - solid.radius for solid in solids])
+    lowest = int(np.argmin(heights))
+    return Lowest(solids[lowest].member.name, float(heights[lowest]))
+
+
+def hull_depth(robot: Mechanism) -> float:
+    """How deep the payload's hull is inside the member that carries it, at home [m]; 0 if it is not."""
     hull = robot.surroundings.payload_hull
     if hull is None:
-        return []
-    model = robot.model()
-    members = robot.members(model.pose, model.joints, model.g)
-    *holders, of_hull = _solids(
-        robot, [*(m for m in members if m.name == robot.tool_member), _hull_member(robot, hull)]
-    )
-    return [Pair(of_hull, holder) for holder in holders]
+        return 0.0
+    holders = [m for m in _members(robot) if m.name == robot.tool_member]
+    *held, of_hull = _solids(robot, [*holders, _hull_member(robot, hull)])
+    depth = -float(np.min(_at_home(robot, [Pair(of_hull, one).distance for one in held])))
+    return max(depth, 0.0) if depth > _ROUNDING * robot.geometry.size else 0.0
 
 
-def base_below(robot: Mechanism, height: float) -> list[Walled]:
-    """The parts of the base, which must be above a floor of this height."""
+def _at_home(robot: Mechanism, expressions: Sequence[ca.SX]) -> np.ndarray:
     model = robot.model()
-    wall = ((2, height, 1.0),)
-    return [Walled(s, "the floor", wall) for s in _solids(robot, robot.base_members(model.pose, model.joints, model.g))]
+    function = ca.Function("at_home", [model.pose, model.geometry], [ca.vertcat(*expressions)])
+    return np.array(function(robot.home, robot.geometry.vector()))[:, 0]
 
 
 def _solids(robot: Mechanism, members: Sequence[Member]) -> list[Solid]:

@@ -8,8 +8,8 @@ import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.margins.parting import Corner, Fixed, Turning, chosen
-from kinematics.margins.solids import Pair, Solid, rooms
+from kinematics.margins.clearance.parting import Corner, Fixed, Turning, chosen
+from kinematics.margins.clearance.solids import Pair, Solid, rooms
 from kinematics.mathematics import LinearForms, shortest_way
 from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
 
@@ -29,6 +29,7 @@ class Clearance(Margin):
     unit = "m"
     words = "distance between the surfaces of the nearest two members that are not joined"
     holds_on_paths = True
+    shown_on_paths = True
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
         """One component for each pair of shapes, and for each shape and what is around it."""
