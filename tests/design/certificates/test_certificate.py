@@ -25,6 +25,7 @@ from kinematics import (
     by_name,
 )
 from kinematics.evaluation import threads
+from tests.design.words import bound_of, trivial
 from tests.sizes import later
 
 PI = math.pi
@@ -149,8 +150,8 @@ def test_a_bound_below_zero_is_not_proved_out_of_reach_either(monkeypatch: pytes
     monkeypatch.setattr("design.certificates.refutation.Refuter.refutation", lambda *_: None)
     beyond = Box(x=(0.0, 1.4), y=0.0, z=-0.7, theta=0.0)
     for margin in Heli4.margins:
-        at_least = 0.0 if margin == "reach" else -1e-3
-        found = certify(Heli4(), beyond, margin, at_least=at_least, most_boxes=5_000)
+        weak = bound_of(Heli4(), margin, 0.0) if margin == "reach" else trivial(Heli4(), margin, 1e3)
+        found = certify(Heli4(), beyond, margin, **weak, most_boxes=5_000)
         assert found.status == "undecided", margin
 
 
@@ -164,13 +165,16 @@ def test_a_bound_below_zero_is_not_proved_out_of_reach_either(monkeypatch: pytes
 def test_no_margin_of_any_robot_is_proved_beyond_reach(
     robot: Mechanism, beyond: Region, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for at_least in (-1.0, 1e-9):
-        for margin in [name for name in robot.margins if name != "reach"]:
-            assert certify(robot, beyond, margin, at_least=at_least, most_boxes=3_000).status == "refuted"
+    asked = [(name, weak) for name in robot.margins if name != "reach" for weak in _weak(robot, name)]
+    for margin, weak in asked:
+        assert certify(robot, beyond, margin, **weak, most_boxes=3_000).status == "refuted"
     monkeypatch.setattr("design.certificates.refutation.Refuter.refutation", lambda *_: None)
-    for at_least in (-1.0, 1e-9):
-        for margin in [name for name in robot.margins if name != "reach"]:
-            assert certify(robot, beyond, margin, at_least=at_least, most_boxes=3_000).status == "undecided", margin
+    for margin, weak in asked:
+        assert certify(robot, beyond, margin, **weak, most_boxes=3_000).status == "undecided", margin
+
+
+def _weak(robot: Mechanism, margin: str) -> tuple[dict[str, float], ...]:
+    return trivial(robot, margin, 1e3), bound_of(robot, margin, 1e-9 if robot.margins[margin].sense > 0 else 1.0)
 
 
 def test_a_modulus_is_above_any_negative_bound_even_where_it_vanishes() -> None:
