@@ -11,6 +11,7 @@ along it; and it bends the rod, which is a beam on two supports.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import NamedTuple
 
 import casadi as ca
@@ -120,6 +121,7 @@ def case_in_motion(robot: Mechanism, payload: float | ca.SX, velocity: ca.SX, ac
     return _case(robot, payload, velocity, acceleration, lambda vector: vector)
 
 
+@lru_cache(maxsize=16)
 def case_at_rest(robot: Mechanism) -> LoadCase:
     """Of the robot at rest with its own `load.payload`.
 
