@@ -179,7 +179,7 @@ def test_heli4s_eight_rods_balance_plates_screw_and_tool_as_free_bodies():
 
 
 def test_the_redundant_robots_eight_rods_balance_its_platform_with_the_least_energy():
-    """Of all tensions that do, as all rods have one section and the drives do not give way: least in the norm that their lengths weigh."""
+    """Rods of one section on drives that do not give way: the least norm that the rods' lengths weigh."""
     robot = Redundant3T1R(inertia=Redundant3T1R.Inertia(drive_train=DriveTrain()))
     i, (pose, velocity, acceleration) = robot.inertia, swinging(robot, 0.2)
     model = robot.model()

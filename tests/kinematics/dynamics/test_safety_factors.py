@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from design import Box, certify
-from kinematics import MECHANISMS, Delta, Heli4, InvalidValue, Peppermill, is_length, member_forces
+from kinematics import MECHANISMS, Delta, GoughStewart, Heli4, InvalidValue, Peppermill, is_length, member_forces
 from kinematics.dynamics import MemberLoad, Size, WorstDirection, safety_factors
 from kinematics.machine import MATERIALS, Load, Tube
 
@@ -132,7 +132,7 @@ def test_stronger_and_stiffer_members_are_as_many_times_as_safe():
 
 def test_a_heavier_load_is_less_safe():
     values = [
-        float(Heli4(load=Load(payload, acceleration)).margin("strength", Heli4().home))
+        float(GoughStewart(load=Load(payload, acceleration)).margin("strength", GoughStewart().home))
         for payload, acceleration in ((0.0, 0.0), (1.0, 0.0), (1.0, 50.0), (1.0, 100.0), (3.0, 100.0))
     ]
     assert (np.diff(values) < 0.0).all()
