@@ -44,7 +44,19 @@ from kinematics.evaluation import (
     over_spans,
     run_through,
 )
-from kinematics.machine import UNIFORM, DriveTrain, FieldKind, GeometryRecord, InertiaRecord, JointRanges, kind_of
+from kinematics.machine import (
+    MATERIALS,
+    UNIFORM,
+    DriveTrain,
+    FieldKind,
+    GeometryRecord,
+    InertiaRecord,
+    JointRanges,
+    Load,
+    Material,
+    Structure,
+    kind_of,
+)
 from kinematics.margins import CLEARANCE, INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
@@ -76,6 +88,7 @@ __all__ = [
     "CORES",
     "INTERNAL_STIFFNESS",
     "LENGTHS",
+    "MATERIALS",
     "MECHANISMS",
     "PASSIVE_JOINT",
     "ROTATIONAL_STIFFNESS",
@@ -104,8 +117,10 @@ __all__ = [
     "JointMotion",
     "JointRanges",
     "LinkwrightError",
+    "Load",
     "LostPaths",
     "Margin",
+    "Material",
     "Measure",
     "Mechanism",
     "MemberForces",
@@ -120,6 +135,7 @@ __all__ = [
     "Redundant3T1R",
     "SelfMotion",
     "SingularArchitecture",
+    "Structure",
     "ToShow",
     "UnreachablePose",
     "Value",

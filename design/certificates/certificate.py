@@ -162,7 +162,7 @@ def _certificate(statement: Statement, region: Region, mirrors: Mirrors, found: 
     return Certificate(
         mechanism=type(statement.robot).__name__,
         digest=statement.robot.geometry.digest,
-        conditions=statement.robot.conditions_digest,
+        conditions=statement.robot.conditions_digest(statement.robot.margin_named(statement.margin).records),
         region=region,
         margin=statement.margin,
         at_least=statement.at_least,

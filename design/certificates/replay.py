@@ -40,13 +40,17 @@ def replay(
 
     Raises:
         OtherCertificate: it is for another mechanism, geometry, joint range, working mode, version, edition, region,
-            margin, FVI bounds or length, or for a lower bound.
+            margin, FVI bounds or length, or for a lower bound; or masses, materials or loads that count are others.
         BrokenCertificate: its boxes do not cover the region, their number is wrong, or one is not proved; its pose does
             not refute the claim; or it is undecided.
     """
     _same("mechanism", certificate.mechanism, type(robot).__name__)
     _same("geometry", certificate.digest, robot.geometry.digest)
-    _same("joint ranges or working mode", certificate.conditions, robot.conditions_digest)
+    _same(
+        "joint ranges or working mode",
+        certificate.conditions,
+        robot.conditions_digest(robot.margin_named(certificate.margin).records),
+    )
     _same("version", certificate.version, version("linkwright"))
     _same("edition", certificate.edition, EDITION)
     if region is not None:

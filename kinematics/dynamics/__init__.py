@@ -19,10 +19,10 @@ from kinematics.dynamics.stiffness import (
     mass_matrix,
     mass_matrix_symbolic,
     platform_stiffness,
-    stiffness_parts,
-    sum_of,
+    stiffness_symbolic,
     tool_stiffness,
     transmission,
+    transmission_at_pose,
 )
 
 __all__ = [
@@ -54,10 +54,10 @@ __all__ = [
     "platform_stiffness",
     "require_payload",
     "safety_factors",
-    "stiffness_parts",
-    "sum_of",
+    "stiffness_symbolic",
     "to_actuators",
     "tool_stiffness",
     "torques",
     "transmission",
+    "transmission_at_pose",
 ]

@@ -17,7 +17,7 @@ from kinematics.dynamics.drive_torque import moving_bodies, require_payload
 from kinematics.errors import InvalidValue
 from kinematics.evaluation import evaluate
 from kinematics.machine import Cut
-from kinematics.mathematics import adjugate
+from kinematics.mathematics import adjugate, cholesky, lower_solved
 from kinematics.model import Build, Mechanism, Model
 
 _REGULAR = 1e12  # a condition number that an inverse bears
@@ -64,27 +64,33 @@ def _drives_compliance(robot: Mechanism, model: Model, efforts: ca.SX) -> ca.SX:
     return efforts.T @ ca.diag(ca.sparsify(ca.DM(1 / stiffness))) @ efforts
 
 
-def stiffness_parts(robot: Mechanism) -> list[tuple[ca.SX, ca.SX]]:
-    """W_b (f, k) and X_b (k, k) at a pose, with K the sum of W_b X_b W_b^T; none if nothing gives way.
+def transmission_at_pose(robot: Mechanism) -> tuple[ca.SX, ca.SX] | None:
+    """Wrenches (f, k) and compliance (k, k) at a pose; None if nothing gives way.
 
     Raises:
-        InvalidValue: some forces meet nothing that gives way, others do.
+        InvalidValue: some forces meet only rigid parts, others do not.
     """
-    whole = transmission(robot)
-    wrenches, compliance = whole.wrenches, whole.compliance
+    wrenches, compliance, _ = transmission(robot)
     if compliance.nnz() == 0:
-        return []
+        return None
     rigid = [k + 1 for k in range(compliance.shape[0]) if compliance[k, k].is_zero()]
     if rigid:
         what = f"{type(robot).__name__} stiffness: transmitted force {rigid[0]} of {compliance.shape[0]}"
         raise InvalidValue(what, "only rigid parts", "a drive, joint or member that gives way for each force, or none")
-    at_pose = robot.model().at_pose(ca.horzcat(wrenches.T, compliance))
-    wrenches, compliance = at_pose[:, : wrenches.shape[0]].T, at_pose[:, wrenches.shape[0] :]
-    parts = []
+    both = robot.model().at_pose(ca.horzcat(wrenches.T, compliance))
+    return both[:, : wrenches.shape[0]].T, both[:, wrenches.shape[0] :]
+
+
+def stiffness_symbolic(wrenches: ca.SX, compliance: ca.SX) -> ca.SX:
+    """(f, f) W C^-1 W^T = H^T H with H = L^-1 W^T and C = L L^T, block by block of C."""
+    count = wrenches.shape[0]
+    result = ca.SX(count, count)
     for block in _blocks(compliance):
-        cofactors, det = adjugate(compliance[block, block], symmetric=True)
-        parts.append((wrenches[:, block], cofactors / det))
-    return parts
+        half = lower_solved(cholesky(compliance[block, block]), wrenches[:, block].T)
+        for i in range(count):
+            for j in range(i + 1):
+                result[i, j] += ca.dot(half[:, i], half[:, j])
+    return ca.tril2symm(result)
 
 
 def platform_stiffness(robot: Mechanism, pose: Array) -> Array:
@@ -130,28 +136,16 @@ def mass_matrix(robot: Mechanism, payload: float, pose: Array) -> Array:
 
 
 def _platform_stiffness(robot: Mechanism, model: Model) -> Build:
-    parts = stiffness_parts(robot)
-    if not parts:
+    found = transmission_at_pose(robot)
+    if found is None:
         raise InvalidValue(f"{type(robot).__name__} stiffness", "only rigid parts", "drives or members that give way")
-    return [model.pose], [sum_of(parts), ca.sum1(robot.limb_roots(model.pose, model.g))]
+    return [model.pose], [stiffness_symbolic(*found), ca.sum1(robot.limb_roots(model.pose, model.g))]
 
 
 def _mass_matrix(robot: Mechanism, model: Model) -> Build:
     payload = ca.SX.sym("payload")
     mass = ca.densify(mass_matrix_symbolic(robot, payload))
     return [model.pose, payload], [mass, ca.sum1(robot.limb_roots(model.pose, model.g))]
-
-
-def sum_of(parts: list[tuple[ca.SX, ca.SX]]) -> ca.SX:
-    """(f, f) the sum of W X W^T for symmetric X; entries beyond the diagonal are computed once."""
-    count = parts[0][0].shape[0]
-    result = ca.SX(count, count)
-    for wrenches, inner in parts:
-        half = wrenches @ inner
-        for i in range(count):
-            for j in range(i + 1):
-                result[i, j] += ca.dot(half[i, :], wrenches[j, :])
-    return ca.tril2symm(result)
 
 
 def mass_matrix_symbolic(robot: Mechanism, payload: float | ca.SX) -> ca.SX:

@@ -19,13 +19,13 @@ from kinematics.machine.links import (
 )
 from kinematics.machine.load import Load
 from kinematics.machine.materials import MATERIALS, Material
+from kinematics.machine.member_masses import arm_mass, mass_points, member_mass, rod_mass
 from kinematics.machine.members import (
     Member,
     Plate,
     Tube,
     bar,
     platform,
-    require_walls,
     shared_joints,
     unjoined,
 )
@@ -69,15 +69,18 @@ __all__ = [
     "TreeJoint",
     "Tube",
     "angle",
+    "arm_mass",
     "bar",
     "frame",
     "kind_of",
     "length",
+    "mass_points",
+    "member_mass",
     "numbers_of",
     "platform",
     "ratio",
-    "require_walls",
     "rod_cut",
+    "rod_mass",
     "screw_pitch",
     "shared_joints",
     "universal",

@@ -23,7 +23,8 @@ class GeometryRecord:
     In a vector, a field of rows is stored row by row.
 
     Raises:
-        InvalidGeometry: a value is not finite, has the wrong number of items, or is not a possible length.
+        InvalidGeometry: a value is not finite, has the wrong number of items, or is not a possible length; or a tube's
+            wall is thicker than its radius.
     """
 
     def __post_init__(self) -> None:
@@ -39,11 +40,21 @@ class GeometryRecord:
             if not kind.allows(array, array):
                 raise self.invalid(f.name, given, kind.expected)
             object.__setattr__(self, f.name, frozen(array))
+        for wall, radius in self.walls().items():
+            most = getattr(self, radius)
+            if getattr(self, wall) > most:
+                raise self.invalid(wall, getattr(self, wall), f"at most {radius}, {most:g} m")
 
     @classmethod
     def invalid(cls, name: str, found: object, expected: str) -> InvalidGeometry:
         """The error that names a field."""
         return InvalidGeometry(cls.__qualname__.split(".")[0].removesuffix("Geometry"), name, found, expected)
+
+    @classmethod
+    def walls(cls) -> dict[str, str]:
+        """The radius of each tube's wall, which cannot be thicker: `arm_radius` of `arm_wall`."""
+        names = {f.name: f.name.removesuffix("_wall") + "_radius" for f in fields(cls)}
+        return {wall: radius for wall, radius in names.items() if wall != radius and wall.endswith("_wall")}
 
     @classmethod
     def sizes(cls) -> dict[str, int]:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
-
-from kinematics.machine.geometry_record import GeometryRecord
 
 _ONE = 1e-9  # of their size: points that are no further apart are one
 _FLAT = 1e-9  # of their size: what rounding leaves of a plane
@@ -28,6 +27,11 @@ class Tube(NamedTuple):
     end: ca.SX
     radius: ca.SX
     wall: ca.SX
+
+    @property
+    def area(self) -> ca.SX:
+        """Of the section [m^2]."""
+        return math.pi * self.wall * (2 * self.radius - self.wall)
 
 
 class Plate(NamedTuple):
@@ -50,12 +54,19 @@ class Member(NamedTuple):
         joints: what holds it, by any names. Two members that share a joint are joined, and may touch.
         material: which field of `Structure` it is made of.
         shapes: what it consists of.
+        link: the link of `bodies` that it is part of, where that has another name.
     """
 
     name: str
     joints: tuple[str, ...]
     material: str
     shapes: tuple[Tube | Plate, ...]
+    link: str = ""
+
+    @property
+    def tube(self) -> Tube:
+        """The first tube."""
+        return next(shape for shape in self.shapes if isinstance(shape, Tube))
 
 
 def bar(name: str, joints: tuple[str, ...], material: str, start: ca.SX, end: ca.SX, radius: ca.SX) -> Member:
@@ -109,16 +120,3 @@ def _hull(flat: np.ndarray) -> list[int]:
         return kept[:-1]
 
     return chain(order) + chain(order[::-1])
-
-
-def require_walls(geometry: GeometryRecord) -> None:
-    """Check that no wall is thicker than its tube's radius: the fields `x_wall` and `x_radius` belong together.
-
-    Raises:
-        InvalidGeometry: naming the wall.
-    """
-    numbers = geometry.as_dict()
-    for name, wall in numbers.items():
-        radius = name.removesuffix("_wall") + "_radius"
-        if name.endswith("_wall") and wall > numbers[radius]:
-            raise geometry.invalid(name, wall, f"at most {radius}, {numbers[radius]:g} m")

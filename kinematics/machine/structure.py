@@ -9,6 +9,7 @@ import numpy as np
 from kinematics.errors import InvalidField
 from kinematics.machine.geometry_record import numbers_of
 from kinematics.machine.materials import MATERIALS, Material
+from kinematics.machine.members import Member
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,11 @@ class Structure:
     screw: Material = MATERIALS["steel"]
     joint_stiffness: float = float("inf")
     joint_play: float = 0.0
+
+    def of(self, member: Member) -> Material:
+        """The material of a member."""
+        material: Material = getattr(self, member.material)
+        return material
 
     def __post_init__(self) -> None:
         for f in fields(self):

@@ -23,7 +23,8 @@ class Clearance(Margin):
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
         """One component for each pair of shapes."""
-        return ca.vertcat(*(ca.norm_2(_gap(one, two)) - thick for one, two, thick in _pairs(robot)))
+        pairs = _pairs(robot)
+        return ca.vertcat(*(ca.norm_2(_gap(one, two)) - thick for one, two, thick in pairs)) if pairs else ca.SX(np.inf)
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:  # noqa: ARG002
         """Two convex sets are at least c apart where any vector w, not 0, parts them.

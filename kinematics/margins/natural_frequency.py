@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import casadi as ca
 
-from kinematics.dynamics import mass_matrix_symbolic, stiffness_parts
+from kinematics.dynamics import mass_matrix_symbolic, transmission_at_pose
 from kinematics.machine import TURN
 from kinematics.margins.stiffness import Pencil, WeakestDirection
 from kinematics.model import Mechanism
@@ -23,13 +23,13 @@ class NaturalFrequency(WeakestDirection):
 
     def pencil(self, robot: Mechanism) -> Pencil | None:
         """Stiffness against mass."""
-        parts = stiffness_parts(robot)
-        if not parts:
+        found = transmission_at_pose(robot)
+        if found is None:
             return None
-        n, freedoms = len(robot.pose_names), parts[0][0].shape[0]
-        order = [*range(n, freedoms), *range(n)]
-        moved = [(wrenches[order, :], inner) for wrenches, inner in parts]
-        return Pencil(moved, mass_matrix_symbolic(robot, robot.load.payload))
+        wrenches, compliance = found
+        n = len(robot.pose_names)
+        order = [*range(n, wrenches.shape[0]), *range(n)]
+        return Pencil(wrenches[order, :], compliance, mass_matrix_symbolic(robot, robot.load.payload))
 
     def eigenvalue(self, bound: ca.SX) -> ca.SX:
         """(2 pi f)^2."""

@@ -12,34 +12,45 @@ import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.dynamics import stiffness_parts, sum_of
-from kinematics.mathematics import root_inverse, row_sums, smallest_eigenvalue
+from kinematics.dynamics import stiffness_symbolic, transmission_at_pose
+from kinematics.mathematics import near_inverse, row_sums, smallest_eigenvalue
 from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
 
 _SURE = 1e-9  # by what a row sum, about 1 in the middle of a box, must be above 0
+_ITERATIONS = 8  # of the power method
 
 
 class Pencil(NamedTuple):
-    """Whose smallest x with K - x diag(0, E) singular is wanted, for K the sum of W X W^T.
+    """Whose smallest x with K - x diag(0, E) singular is wanted, for K = W C^-1 W^T.
 
     Attributes:
-        parts: W (f, k) and X (k, k), positive definite.
+        wrenches: W (f, k) on the freedoms that are not held.
+        compliance: C (k, k), positive definite.
         weight: E (e, e), positive definite, of the last e freedoms. The others are free.
     """
 
-    parts: list[tuple[ca.SX, ca.SX]]
+    wrenches: ca.SX
+    compliance: ca.SX
     weight: ca.SX
 
     def smallest(self) -> ca.SX:
         """x."""
-        return smallest_eigenvalue(sum_of(self.parts), self.weight)
+        return smallest_eigenvalue(self.stiffness, self.weight)
 
-    def shifted(self, x: ca.SX, scaling: ca.SX) -> ca.SX:
-        """S^T (K - x diag(0, E)) S (c, c) with any S (f, c)."""
-        kept = scaling[-self.weight.shape[0] :, :]
-        scaled = [(scaling.T @ wrenches, inner) for wrenches, inner in self.parts]
-        result: ca.SX = sum_of(scaled) - x * (kept.T @ self.weight @ kept)
-        return result
+    @property
+    def stiffness(self) -> ca.SX:
+        """K."""
+        return stiffness_symbolic(self.wrenches, self.compliance)
+
+    def whole_weight(self) -> ca.SX:
+        """diag(0, E) (f, f)."""
+        rest = self.wrenches.shape[0] - self.weight.shape[0]
+        return ca.diagcat(ca.SX(rest, rest), self.weight)
+
+    def balance(self, x: ca.SX) -> ca.SX:
+        """(k + f, k + f) [[-C, W^T], [W, -x diag(0, E)]]: forces and motions in balance. It needs no inverse of C."""
+        above = ca.horzcat(-self.compliance, self.wrenches.T)
+        return ca.vertcat(above, ca.horzcat(self.wrenches, -x * self.whole_weight()))
 
 
 class WeakestDirection(Margin):
@@ -68,23 +79,28 @@ class WeakestDirection(Margin):
         if pencil is None:
             return super().to_refute(robot, claim)
         x = self.eigenvalue(ca.fmax(claim.bound, 0))  # a bound below 0 holds; its square would not say so
-        count = pencil.parts[0][0].shape[0]
-        v = ca.SX.sym("scaling", count, 1)
-        return ToShow(pencil.shifted(x, v), v, pencil.shifted(x, ca.SX.eye(count)), _weakest)
+        matrix = pencil.stiffness - x * pencil.whole_weight()
+        v = ca.SX.sym("scaling", matrix.shape[0], 1)
+        return ToShow(v.T @ matrix @ v, v, matrix, _weakest)
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
-        """K - x diag(0, E) is positive definite, as S^T (.) S is, by Gershgorin.
+        """`Pencil.balance` is regular everywhere, and the margin is above the bound at one pose of the region.
 
-        Then so is its Schur complement, what the free freedoms leave of K less x E: all eigenvalues are above x. S
-        makes the matrix nearly the identity in the middle of a box.
+        The Schur complement of -C in it is K - x diag(0, E). So that is regular too, and none of its eigenvalues, all
+        above 0 at one pose, can change its sign in a connected region. A matrix Q is regular where D^-1 P Q D is, with
+        any P and any diagonal D; and that is, by Gershgorin, where the sum of each row, the moduli beside the diagonal
+        negative, is above 0. P is the inverse of Q in the middle of a box; D makes the rows alike.
         """
         pencil = self.pencil(robot) if positive else None
         if pencil is None:
             return super().to_show(robot, claim, inside, positive)
-        x, count = self.eigenvalue(claim.bound), pencil.parts[0][0].shape[0]
-        scaling = ca.SX.sym("scaling", count, count)
-        rows = row_sums(pencil.shifted(x, scaling)) - _SURE
-        return ToShow(rows, scaling, pencil.shifted(x, ca.SX.eye(count)), root_inverse)
+        matrix = pencil.balance(self.eigenvalue(claim.bound))
+        n = matrix.shape[0]
+        scaling = ca.SX.sym("scaling", n, n + 1)
+        left, right = scaling[:, :n], ca.diag(scaling[:, n])
+        there = float(robot.margin(self.name, inside))
+        rows = row_sums(left @ (matrix @ right)) - _SURE
+        return ToShow(ca.vertcat(rows, there * (1 - _SURE) - claim.bound), scaling, matrix, _preconditioner)
 
 
 class _Directional(WeakestDirection):
@@ -96,11 +112,12 @@ class _Directional(WeakestDirection):
 
     def pencil(self, robot: Mechanism) -> Pencil | None:
         """With the unit matrix as weight."""
-        parts = stiffness_parts(robot)
-        if not parts:
+        found = transmission_at_pose(robot)
+        if found is None:
             return None
-        free, asked = self.directions(robot, parts[0][0].shape[0])
-        return Pencil([(wrenches[free + asked, :], inner) for wrenches, inner in parts], ca.SX.eye(len(asked)))
+        wrenches, compliance = found
+        free, asked = self.directions(robot, wrenches.shape[0])
+        return Pencil(wrenches[free + asked, :], compliance, ca.SX.eye(len(asked)))
 
 
 def _internal(robot: Mechanism, freedoms: int) -> list[int]:
@@ -145,8 +162,26 @@ class InternalStiffness(_Directional):
         return [], _internal(robot, freedoms)
 
 
+def _preconditioner(matrices: Array) -> Array:
+    """(k, n, n) Q -> (k, n, n + 1) D^-1 Q^-1, and in a last column D: Perron's vector of |Q^-1| |Q|, to a few digits.
+
+    With it the rows of D^-1 Q^-1 dQ D are alike for a change dQ of the same share of each entry.
+    """
+    usable = np.isfinite(matrices).all(axis=(1, 2))
+    eye = np.eye(matrices.shape[1])
+    matrices = np.where(usable[:, None, None], matrices, eye)
+    size = np.sqrt(np.abs(matrices).max(axis=2))  # symmetric, so that rows and columns alike are divided by it
+    inverse = near_inverse(matrices / size[:, :, None] / size[:, None, :]) / size[:, :, None] / size[:, None, :]
+    spread, weight = np.abs(inverse) @ np.abs(matrices), 1 / size
+    for _ in range(_ITERATIONS):
+        weight = (spread @ weight[:, :, None])[:, :, 0]
+        weight /= weight.max(axis=1, keepdims=True)
+    return np.concatenate([inverse / weight[:, :, None], weight[:, :, None]], axis=2)
+
+
 def _weakest(matrices: Array) -> Array:
     """(k, n, n) -> (k, n, 1) unit eigenvectors of the smallest eigenvalue."""
+    matrices = np.atleast_3d(matrices)  # one entry may come as (k, 1)
     usable = np.isfinite(matrices).all(axis=(1, 2))
     _, vectors = np.linalg.eigh(np.where(usable[:, None, None], matrices, np.eye(matrices.shape[1])))
     return vectors[:, :, :1]

@@ -8,7 +8,13 @@ from kinematics.mathematics.jacobi_rotations import singular_values
 from kinematics.mathematics.orientation import angles, rotation, turn
 from kinematics.mathematics.polynomial_product import product
 from kinematics.mathematics.polynomial_roots import real_roots
-from kinematics.mathematics.positive_definite import cholesky, root_inverse, row_sums, smallest_eigenvalue
+from kinematics.mathematics.positive_definite import (
+    cholesky,
+    lower_solved,
+    root_inverse,
+    row_sums,
+    smallest_eigenvalue,
+)
 from kinematics.mathematics.rigid_displacements import displacement, leg_quadrics, study_quadric
 from kinematics.mathematics.scaling import near_inverse
 from kinematics.mathematics.segment_distance import segment_distances, segment_gap_symbolic
@@ -25,6 +31,7 @@ __all__ = [
     "distinct",
     "gaps",
     "leg_quadrics",
+    "lower_solved",
     "near_inverse",
     "not_below_zero",
     "product",

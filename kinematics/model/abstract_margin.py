@@ -88,6 +88,7 @@ class Margin(ABC):
         beyond_reach: whether it has a value even where a limb cannot reach.
         of_members: whether it is the safety factor of the members, of which a cycle's motion has its own too.
         singularity: the kind of singularity where it is 0; empty if it shows none.
+        records: the robot's records that it depends on, besides geometry and ranges: inertia, structure, load.
     """
 
     name: ClassVar[str]
@@ -98,6 +99,7 @@ class Margin(ABC):
     beyond_reach: ClassVar[bool] = False
     of_members: ClassVar[bool] = False
     singularity: ClassVar[str] = ""
+    records: ClassVar[tuple[str, ...]] = ()
 
     @abstractmethod
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:

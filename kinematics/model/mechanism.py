@@ -14,7 +14,7 @@ import numpy as np
 from kinematics.arrays import Array, checked, together
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.evaluation import BlockProgram, evaluate
-from kinematics.machine import GeometryRecord, InertiaRecord, JointRanges, Load, Structure, require_walls
+from kinematics.machine import GeometryRecord, InertiaRecord, JointRanges, Load, Structure
 from kinematics.model import expressions
 from kinematics.model.abstract_margin import Margin, Measure
 from kinematics.model.continuation import forward_near
@@ -65,7 +65,6 @@ class Mechanism(Definition):
         self.geometry = geometry if geometry is not None else self.Geometry()
         if not isinstance(self.geometry, self.Geometry):
             raise InvalidValue(f"{type(self).__name__} geometry", geometry, f"a {self.Geometry.__name__}")
-        require_walls(self.geometry)
         self.inertia = inertia if inertia is not None else self.Inertia()
         if not isinstance(self.inertia, self.Inertia):
             raise InvalidValue(f"{type(self).__name__} inertia", inertia, f"a {self.Inertia.__name__}")
@@ -95,15 +94,13 @@ class Mechanism(Definition):
     def __hash__(self) -> int:
         return self._hash
 
-    def conditions(self) -> dict[str, Any]:
-        """The plain data that a margin depends on besides the geometry."""
-        records = {name: asdict(getattr(self, name)) for name in ("ranges", "inertia", "structure", "load")}
-        return records | {"mode": self.mode}
+    def conditions(self, records: Sequence[str] = ()) -> dict[str, Any]:
+        """The plain data that a margin depends on besides the geometry: joint ranges, mode, and its `records`."""
+        return {name: asdict(getattr(self, name)) for name in ("ranges", *records)} | {"mode": self.mode}
 
-    @property
-    def conditions_digest(self) -> str:
+    def conditions_digest(self, records: Sequence[str] = ()) -> str:
         """SHA-256 of `conditions`. A proof states it, so that it is known which robot it is for."""
-        return hashlib.sha256(json.dumps(self.conditions(), sort_keys=True).encode()).hexdigest()
+        return hashlib.sha256(json.dumps(self.conditions(records), sort_keys=True).encode()).hexdigest()
 
     def with_inertia(self, inertia: InertiaRecord) -> Self:
         """The same robot with other masses and drives."""

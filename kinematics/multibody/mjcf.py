@@ -3,7 +3,7 @@
 At the pose of the export every frame coincides with the base's, so that all points and axes are in base coordinates
 there, and every joint's `ref` is its coordinate: the document loads with its loops closed at that pose, and its joints
 are the mechanism's own (q1 ..., x, y ...). Rods whose mass is split between their ends are tendons of constant length;
-with mass at their middle they are bodies. A link that only carries a rotor gets 1e-12 kg.
+with mass at their middle they are bodies. A link that only carries a rotor gets 1e-12 kg. The members are drawn.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from kinematics.arrays import Array
 from kinematics.dynamics import GRAVITY
 from kinematics.machine import Link
 from kinematics.model import Mechanism
+from kinematics.multibody.geoms import add_geoms
 from kinematics.multibody.open_tree import OpenTree, open_tree
 
 _STEP = 1e-4  # [s]
@@ -45,7 +46,9 @@ def mjcf(robot: Mechanism, pose: Array, payload: float = 0.0) -> str:
     tendons, equality = (Xml.SubElement(root, tag) for tag in ("tendon", "equality"))
     _close(cut, elements, tendons, equality)
     _drive(robot, cut, elements, tendons, Xml.SubElement(root, "actuator"))
-    for element in (tendons, equality):
+    model, asset = robot.model(), Xml.SubElement(root, "asset")
+    add_geoms(robot.members(model.pose, model.joints, model.g), elements, asset, cut.reference)
+    for element in (tendons, equality, asset):
         if not len(element):
             root.remove(element)
     Xml.indent(root)

@@ -32,13 +32,12 @@ class OpenTree(NamedTuple):
     rods_are_bodies: bool
 
     def particles(self) -> list[Particle]:
-        """Every particle on its link."""
-        if not self.rods_are_bodies:
-            return self.bodies.all_particles()
-        return [
-            *self.bodies.particles,
-            *(p for k in range(len(self.bodies.rods)) for p in self.bodies.rod_particles(k)),
-        ]
+        """Every particle on its link, its mass a number."""
+        own = self.bodies.all_particles()
+        if self.rods_are_bodies:
+            rods = range(len(self.bodies.rods))
+            own = [*self.bodies.particles, *(p for k in rods for p in self.bodies.rod_particles(k))]
+        return [p._replace(mass=float(self.reference(ca.SX(p.mass)))) for p in own]
 
 
 def open_tree(robot: Mechanism, pose: Array, payload: float) -> OpenTree:
@@ -65,7 +64,7 @@ def open_tree(robot: Mechanism, pose: Array, payload: float) -> OpenTree:
 
     bodies = moving_bodies(robot, model, payload)
     tree = robot.link_tree(model.pose, model.joints, model.g, reference) or links_of_bodies(robot, model, bodies)
-    if not robot.inertia.rod_middle:
+    if all(rod.split for rod in bodies.rods):
         return OpenTree(tree._replace(couplings=tree.couplings + tree.planes), bodies, reference, False)
     links, connections = _rod_links(bodies, tree, reference)
     whole = tree._replace(links=tree.links + links, connections=tree.connections + connections)

@@ -12,7 +12,7 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
-from kinematics.machine import Bodies, GeometryRecord, Member, Particle, angle, length, platform
+from kinematics.machine import Bodies, GeometryRecord, Member, Particle, angle, length, member_mass, platform
 from kinematics.margins import INTERNAL_STIFFNESS, PASSIVE_JOINT, STANDARD
 from kinematics.mathematics import determinant, not_below_zero
 from kinematics.model import Build, FviBounds, Model, by_name
@@ -68,10 +68,12 @@ class DeltaInertia(ArmInertia):
     """The masses of the arms and the plate.
 
     Attributes:
-        plate_mass: mass of the plate; the payload is a point on it.
+        plate_fittings: what the plate carries, such as the rods' joints; the payload is a point on it.
+        plate_mass: mass of the plate; None takes that of the plate with its fittings.
     """
 
-    plate_mass: float = 0.45
+    plate_fittings: float = 0.206
+    plate_mass: float | None = None
 
 
 class Delta(PairedArms):
@@ -132,8 +134,10 @@ class Delta(PairedArms):
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, rods, plate and payload."""
-        bodies = arms_and_rods(self, pose, joints, g, self.inertia.rod_mass, ["plate"] * 3)
-        bodies.particles.append(Particle("plate", self.inertia.plate_mass + payload, pose))
+        bodies = arms_and_rods(self, pose, joints, g, ["plate"] * 3, g.parallelogram_width)
+        plate, given = self.members(ca.SX(3, 1), joints, g)[-1], self.inertia.plate_mass
+        own = self.inertia.plate_fittings + member_mass(plate, self.structure.of(plate).density)
+        bodies.particles.append(Particle("plate", (own if given is None else given) + payload, pose))
         return bodies
 
     def members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:

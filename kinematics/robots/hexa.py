@@ -66,7 +66,7 @@ class HexaGeometry(GeometryRecord):
     arm_wall: float = length(0.002, doc="of the arms' tubes")
     rod_radius: float = length(0.006, doc="of the rods' tubes, outside")
     rod_wall: float = length(0.0015, doc="of the rods' tubes")
-    plate_thickness: float = length(0.012, doc="of the platform")
+    plate_thickness: float = length(0.008, doc="of the platform")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -86,11 +86,14 @@ class HexaInertia(ArmInertia):
     """The masses of the arms, with one rod each, and of the platform.
 
     Attributes:
-        platform_mass: six equal particles at the B_i; the payload is a particle at the tool point.
+        platform_joint, platform_mass: as for `GoughStewart`; the payload is a particle at the tool point.
     """
 
-    rod_mass: float = 0.13
-    platform_mass: float = 0.8
+    arm_hub: float = 0.665
+    arm_joint: float = 0.0416
+    rod_joint: float = 0.039
+    platform_joint: float = 0.045
+    platform_mass: float | None = None
 
 
 class Hexa(SixLegs, RotaryLimbs):
@@ -155,8 +158,8 @@ class Hexa(SixLegs, RotaryLimbs):
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, rods, platform, payload."""
-        bodies = arms_and_rods(self, pose, joints, g, self.inertia.rod_mass, ["platform"] * 6)
-        self.platform_bodies(pose, self.platform_points(pose, g), payload, bodies)
+        bodies = arms_and_rods(self, pose, joints, g, ["platform"] * 6)
+        self.platform_bodies(pose, joints, g, payload, bodies)
         return bodies
 
     def members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:

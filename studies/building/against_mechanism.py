@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from kinematics import is_length
+from kinematics import MATERIALS, is_length
 from studies.building.geometry_fields import GeometryField, geometry_fields, shape
 from studies.building.hardware import hardware_faults, hardware_tables, joint_unit, subtable
 from studies.errors import KeyPath
@@ -49,7 +49,7 @@ def study_table(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> Table:
     return table_of(Study).updated(
         {
             "geometry": Table({name: _dimensions(field) for name, field in fields.items()}),
-            **hardware_tables(mechanism),
+            **hardware_tables(mechanism, raw),
             "home": _home_table(mechanism),
             "region": _region_table(mechanism, raw.get("region")),
             "optimise": table_of(OptimiseTable).updated(optimise),
@@ -91,6 +91,10 @@ def at_odds(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[Key
         if shape(value) != field.shape or not all(field.kind.allows(n, n) for n in _numbers(value)):
             yield ("geometry", name)
     yield from hardware_faults(data, mechanism)
+    materials = {*MATERIALS, *subtable(data, "material")}
+    for kind, name in subtable(data, "structure").items():
+        if isinstance(name, str) and name not in materials:
+            yield ("structure", kind)
     yield from _uncounted(subtable(data, "trajectory"), len(mechanism.joint_names))
     joints = subtable(data, "home").get("joints")
     if isinstance(joints, tuple) and len(joints) != len(mechanism.joint_names):

@@ -6,11 +6,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import Field, fields, replace
 from typing import TYPE_CHECKING, Any
 
+import casadi as ca
 import numpy as np
 
-from kinematics import DriveTrain, InvalidValue
+from kinematics import MATERIALS, DriveTrain, InvalidValue, Load, Material, Structure
 from studies.errors import KeyPath
-from studies.study_file import Dimension, InertiaTable, Key, Table, table_of
+from studies.study_file import Dimension, InertiaTable, Key, MaterialTable, StructureTable, Table, table_of
 
 if TYPE_CHECKING:
     from kinematics import InertiaRecord, JointRanges, Mechanism
@@ -27,10 +28,25 @@ _JOINTS: dict[tuple[str, ...], Dimension] = {("m",): Dimension.LENGTH, ("rad",):
 
 def inertia_of(study: Study) -> InertiaRecord:
     """The mechanism's masses; those that the study sets replace the mechanism's own."""
+    own = study.mechanism_class.Inertia()
+    drive_train = replace(own.drive_train, **study.inertia.drive_train.model_dump(exclude_none=True))
     masses: dict[str, Any] = dict(study.inertia.masses)
-    usual = study.mechanism_class.Inertia()
-    drive_train = replace(usual.drive_train, **study.inertia.drive_train.model_dump(exclude_none=True))
-    return replace(usual, **masses, drive_train=drive_train)
+    return replace(own, **masses, drive_train=drive_train)
+
+
+def structure_of(study: Study) -> Structure:
+    """The members' materials and the joints; those that the study sets replace the usual ones."""
+    asked = study.structure
+    materials = dict(MATERIALS) | {name: Material(**m.model_dump()) for name, m in study.material.items()}
+    changes: dict[str, Any] = {kind: materials[name] for kind, name in asked.materials.items()}
+    if asked.joint_stiffness is not None:
+        changes["joint_stiffness"] = asked.joint_stiffness
+    return Structure(**changes, joint_play=asked.joint_play)
+
+
+def load_of(study: Study) -> Load:
+    """What `natural_frequency` and `strength` are for."""
+    return Load(**study.load.model_dump())
 
 
 def ranges_of(study: Study) -> JointRanges:
@@ -39,8 +55,10 @@ def ranges_of(study: Study) -> JointRanges:
     return study.mechanism_class.Ranges(**ranges)
 
 
-def hardware_tables(mechanism: type[Mechanism]) -> dict[str, Table]:
-    """The keys of `[inertia]` and `[ranges]`."""
+def hardware_tables(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> dict[str, Table]:
+    """The keys of `[inertia]`, `[structure]`, `[material]` and `[ranges]`. `raw` has the study's own materials."""
+    own = subtable(raw, "material")
+    material = Key("a material out of", choices=(*MATERIALS, *(name for name in own if name not in MATERIALS)))
     masses = {f.name: _key(f, mechanism.Inertia.dimensions, " >= 0") for f in fields(mechanism.Inertia)}
     ranges = {f.name: _key(f, mechanism.Ranges.dimensions) for f in fields(mechanism.Ranges)}
     joints = Key(
@@ -49,7 +67,16 @@ def hardware_tables(mechanism: type[Mechanism]) -> dict[str, Table]:
     return {
         "inertia": Table({**masses, **table_of(InertiaTable).keys}),
         "ranges": Table(ranges | {"joints": joints}),
+        "material": Table(dict.fromkeys(own, table_of(MaterialTable))),
+        "structure": Table(dict.fromkeys(_member_kinds(mechanism), material)).updated(table_of(StructureTable).keys),
     }
+
+
+def _member_kinds(mechanism: type[Mechanism]) -> list[str]:
+    """The kinds of members that it has, in the order of its members."""
+    pose, joints = ca.SX.sym("pose", len(mechanism.pose_names)), ca.SX.sym("joints", len(mechanism.joint_names))
+    members = mechanism().members(pose, joints, mechanism.Geometry.symbols()[1])
+    return list(dict.fromkeys(member.material for member in members))
 
 
 def joint_unit(mechanism: type[Mechanism]) -> Dimension:

@@ -55,7 +55,25 @@ def load_study(file: TomlFile, allow_code: bool = False) -> Study:
     except InvalidGeometry as error:
         key = conversion.spelling.get(("geometry", error.field), ("geometry",))
         raise StudyError([file.fault(key, spelled(file.value(key)), error.expected)]) from error
+    _require_thin_walls(study, file, conversion)
     return _with_waypoints(study, file, conversion, named.mechanism_class.pose_names)
+
+
+def _require_thin_walls(study: Study, file: TomlFile, conversion: Conversion) -> None:
+    """Check that no bounds of the optimisation allow a wall that is thicker than its tube's radius.
+
+    Raises:
+        StudyError: at the bounds.
+    """
+    kind = study.mechanism_class.Geometry
+    own = kind(**study.geometry).as_dict()
+    bounds = {} if study.optimise is None else study.optimise.variables
+    for wall, radius in kind.walls().items():
+        (_, most), (least, _) = (bounds.get(name, (own[name], own[name])) for name in (wall, radius))
+        if most > least:
+            key = conversion.spelling[("optimise", "variables", wall if wall in bounds else radius)]
+            expected = f"bounds in which {wall} is at most {radius}"
+            raise StudyError([file.fault(key, f"a wall of up to {most:g} m and a radius from {least:g} m", expected)])
 
 
 def _with_waypoints(study: Study, file: TomlFile, conversion: Conversion, pose_names: tuple[str, ...]) -> Study:

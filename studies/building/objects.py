@@ -20,7 +20,7 @@ from kinematics import (
     UnreachablePose,
     to_actuators,
 )
-from studies.building.hardware import inertia_of, ranges_of
+from studies.building.hardware import inertia_of, load_of, ranges_of, structure_of
 from studies.building.inside_region import leaving
 from studies.errors import HomeOutOfReach, StudyError
 from studies.study_file import (
@@ -52,6 +52,8 @@ def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
         ranges_of(study),
         home=_home_pose(study, kind.pose_names),
         home_joints=joints,
+        structure=structure_of(study),
+        load=load_of(study),
     )
 
 

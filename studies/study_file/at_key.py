@@ -27,6 +27,8 @@ _RECORDS: dict[str, KeyPath] = {
     "Trajectory": ("trajectory",),
     "Drive": ("trajectory", "drive"),
     "DriveTrain": ("inertia", "drive_train"),
+    "Structure": ("structure",),
+    "Load": ("load",),
 }
 _OF_THE_PATH = (PathRefused, RoughPath, UnreachablePose, UnsuitedPath)
 _OF_THE_LIMITS = (LimitsExceeded, TimingFailed)

@@ -4,8 +4,10 @@ from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
+from kinematics import Load
 from studies.study_file.keys import Key
-from studies.study_file.table import StudyTable, gathered, table_of
+from studies.study_file.table import NotNegative, Positive, StudyTable, gathered, table_of
+from studies.study_file.units import Dimension
 
 Numbers = float | tuple[float, ...]
 Ranges = dict[str, Numbers | tuple[tuple[float, float], ...]]
@@ -27,6 +29,44 @@ class DriveTrainTable(StudyTable):
     """The friction at the joint for each unit of speed. The law `toppra` does not allow it."""
     stiffness: Annotated[Numbers | None, Key("a number > 0, or one a joint (N m/rad, or N/m)")] = None
     """How hard gear and servo loop resist at the joint."""
+
+
+class MaterialTable(StudyTable):
+    """A material of the study's own, along a tube or bar."""
+
+    density: Annotated[Positive, Key("a density > 0 (kg/m^3)")]
+    """The density."""
+    modulus: Annotated[Positive, Key("a modulus > 0 (Pa)")]
+    """Young's modulus along the axis."""
+    shear_modulus: Annotated[Positive, Key("a modulus > 0 (Pa)")]
+    """The modulus for torsion about the axis."""
+    strength: Annotated[Positive, Key("a stress > 0 (Pa)")]
+    """The largest stress that the material bears for many cycles."""
+
+
+class StructureTable(StudyTable):
+    """What the members are made of, and how the joints between them give way."""
+
+    materials: dict[str, str] = Field(default_factory=dict)
+    """The name of the material of each kind of member."""
+    joint_stiffness: Annotated[Positive | None, Key("a stiffness > 0 (N/m)")] = None
+    """The stiffness of each joint at a rod's end, along the rod. None takes joints that do not give way."""
+    joint_play: Annotated[NotNegative, Key("a length >= 0", Dimension.LENGTH)] = 0.0
+    """How far each joint at a rod's end lets the rod slip along itself, from one end to the other."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _gather_materials(cls, data: Any) -> Any:
+        return gathered(cls, data, "materials")
+
+
+class LoadTable(StudyTable):
+    """The load that `natural_frequency` and `strength` are for. A cycle states its own payloads."""
+
+    payload: Annotated[NotNegative, Key("a mass >= 0 (kg)")] = Load().payload
+    """The mass at the tool point."""
+    acceleration: Annotated[NotNegative, Key("an acceleration >= 0 (m/s^2)")] = Load().acceleration
+    """The acceleration of the tool point, in the worst direction."""
 
 
 class InertiaTable(StudyTable):

@@ -1,8 +1,8 @@
 """The two questions of a study, each with a digest: which geometry is best, and how fast its cycle can be.
 
-A payload belongs only to the cycle: no margin of a geometry depends on masses. Keys that decide neither answer, such as
-the title, the budget or the formats of the drive files, belong to no question. The claims to be proved are compared
-separately.
+Masses, materials and loads belong to the first only if a margin that it asks for depends on them. Keys that decide
+neither answer, such as the title, the budget or the formats of the drive files, belong to no question. The claims to be
+proved are compared separately.
 """
 
 from __future__ import annotations
@@ -18,9 +18,10 @@ if TYPE_CHECKING:
 DESIGN = frozenset(
     ("mechanism", "code", "geometry", "ranges", "region", "home", "fvi", "optimise", "dense_sample", "requirement")
 )
-CYCLE = frozenset(("inertia", "trajectory"))
+CYCLE = frozenset(("inertia", "material", "structure", "trajectory"))
+_OF_RECORDS = {"inertia": ("inertia",), "structure": ("material", "structure"), "load": ("load",)}  # their tables
 _NO_MATTER = {"trajectory": {"files": True, "drive": True, "path": {"file": True}}}  # they do not change the motion
-_GATHERED = ("coordinates", "masses")  # fields of the models that no file has
+_GATHERED = ("coordinates", "masses", "materials")  # fields of the models that no file has
 _FEW = 12  # up to so many waypoints are written one by one
 
 Question = dict[
@@ -30,7 +31,9 @@ Question = dict[
 
 def design_question(study: Study) -> Question:
     """All keys that decide the geometry and its figures, to 12 digits. Defaults are left out."""
-    return _flat(study.model_dump(include=set(DESIGN), exclude_defaults=True, exclude_none=True))
+    margins = [study.mechanism_class.margins[row.margin] for row in study.requirement]
+    more = {table for margin in margins for record in margin.records for table in _OF_RECORDS[record]}
+    return _flat(study.model_dump(include=set(DESIGN) | more, exclude_defaults=True, exclude_none=True))
 
 
 def cycle_question(study: Study) -> Question:

@@ -7,7 +7,7 @@ from pydantic import Field, SkipValidation, model_validator
 from design import DENSE, MOST_BOXES, STARTS
 from kinematics import Mechanism
 from studies.study_file.keys import Key, Table
-from studies.study_file.machine_tables import InertiaTable, Ranges
+from studies.study_file.machine_tables import InertiaTable, LoadTable, MaterialTable, Ranges, StructureTable
 from studies.study_file.questions import digest_of, plain
 from studies.study_file.table import Entry, Interval, Name, Positive, StudyTable, gathered, table_of
 from studies.study_file.trajectory_tables import TrajectoryTable
@@ -154,6 +154,12 @@ class Study(StudyTable):
     """The geometry, where it differs from the prototype's [m, rad, m per turn]."""
     inertia: Annotated[InertiaTable, Table({})] = InertiaTable()
     """The masses and drives, where they differ from the prototype's."""
+    material: Annotated[dict[str, MaterialTable], Field(default_factory=dict), Table({})]
+    """Materials of the study's own, by name."""
+    structure: Annotated[StructureTable, Table({})] = StructureTable()
+    """What the members are made of, where it differs from the prototype's."""
+    load: Annotated[LoadTable, table_of(LoadTable)] = LoadTable()
+    """The load that `natural_frequency` and `strength` are for."""
     ranges: Annotated[Ranges, Field(default_factory=dict), Table({})]
     """The joint ranges, where they differ from the prototype's."""
     region: Annotated[Annotated[BoxTable | CylinderTable, Field(discriminator="kind")], Table({})]

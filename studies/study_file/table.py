@@ -21,6 +21,7 @@ def _not_falling(pair: tuple[float, float]) -> tuple[float, float]:
 
 
 Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
 Interval = Annotated[tuple[float, float], AfterValidator(_rising)]
 Entry = Annotated[tuple[float, float], AfterValidator(_not_falling)]
 PerJoint = Positive | Annotated[tuple[Positive, ...], Field(min_length=1)]

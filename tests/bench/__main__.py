@@ -70,7 +70,7 @@ def _bench_table(benchmarks: list[dict[str, Any]]) -> str:
         "",
     ]
     lines += [f"| Heli4, {count:,} poses | Linkwright | batched numpy | ratio |", "| --- | --- | --- | --- |"]
-    for what in ("inverse", "forward", "fvi"):
+    for what in ("inverse", "forward", "fvi", "stiffness"):
         ours, peer = median[f"test_poses[{what}-linkwright]"], median[f"test_poses[{what}-numpy]"]
         lines.append(f"| {what} | {1e3 * ours:.1f} ms | {1e3 * peer:.1f} ms | {peer / ours:.1f} |")
     lines += ["", *_bulk_rows(median, count), "", "| job | time |", "| --- | --- |"]

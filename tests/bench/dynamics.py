@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from kinematics import inverse_dynamics
-from tests.kinematics.multibody.mujoco_model import MAIN, OpenTree, cycle, loaded, with_uniform_rods
+from tests.kinematics.multibody.mujoco_model import MAIN, OpenTree, cycle, loaded, with_rods
 
 PAGE = Path(__file__).parents[2] / "docs" / "dynamics.md"
 START, END = "<!-- written by `python -m tests.bench.dynamics` -->", "<!-- /dynamics -->"
@@ -26,7 +26,7 @@ def main() -> None:
         "| --- | --- | --- | --- | --- |",
     ]
     for kind in MAIN:
-        uniform = with_uniform_rods(kind())
+        uniform = with_rods(kind(), True)
         motion = cycle(kind, HALF, np.arange(round(2 * HALF / STEP) + 1) * STEP)
         split, torque = (inverse_dynamics(robot, PAYLOAD, *motion) for robot in (kind(), uniform))
         error = np.abs(split - torque).max() / np.abs(torque).max()

@@ -50,6 +50,51 @@ def fvi(g: Heli4.Geometry, pose: Array, speed: float, effort: float, v: float, f
     return np.minimum(velocity * speed / v, force * effort / f)
 
 
+def stiffness(robot: Heli4, pose: Array) -> Array:
+    """(k,) the weakest translational stiffness with theta held: 2 x 2 compliances, an 8 x 8 matrix, `eigvalsh`."""
+    g, s = robot.geometry, robot.structure
+    q = inverse(g, pose)
+    base, radial = actuators(g)
+    up, axis = np.array([0, 0, 1.0]), np.cross([0, 0, 1.0], radial)
+    along = np.sin(q)[..., None] * radial + np.cos(q)[..., None] * up
+    ends = platform_points(g, pose)
+    rods = (ends - base - g.arm_length * along) / g.rod_length
+    area, _ = _ring(g.rod_radius, g.rod_wall)
+    arm_area, inertia = _ring(g.arm_radius, g.arm_wall)
+    length, bending = g.arm_length, s.arm.modulus * inertia
+    drive = robot.inertia.drive_train.stiffness
+    give = g.rod_length / (s.rod.modulus * area) + 2 / s.joint_stiffness
+    across, tension = np.cross(along, rods), (along * rods).sum(axis=-1)
+    moments = np.stack([np.cross(side * g.parallelogram_width * axis, rods) for side in (-0.5, 0.5)], axis=-2)
+    torques = (moments * along[..., None, :]).sum(axis=-1)
+    mixed = (moments * across[..., None, :]).sum(axis=-1)
+    about = (across * axis).sum(axis=-1) * length
+    shared = tension**2 * length / (s.arm.modulus * arm_area) + about**2 / drive
+    shared += length**3 / (3 * bending) * (across**2).sum(axis=-1)
+    compliance = moments @ np.swapaxes(moments, -1, -2) * length / bending + shared[..., None, None] + give * np.eye(2)
+    twist = length / (2 * s.arm.shear_modulus * inertia) - length / bending
+    compliance += twist * torques[..., :, None] * torques[..., None, :]
+    compliance += length**2 / (2 * bending) * (mixed[..., :, None] + mixed[..., None, :])
+    wrenches = np.zeros((len(pose), 4, 2, 7))  # x, y, z, then omega_x, omega_y and both plates' turns
+    pull, lead = -rods, g.pitch / (2 * np.pi)
+    for k, side in enumerate((-0.5, 0.5)):
+        levers = ends + side * g.parallelogram_width * axis - pose[:, None, :3]
+        moment = np.cross(levers, pull)
+        wrenches[:, :, k, :3], wrenches[:, :, k, 3:5] = pull, moment[..., :2]
+        wrenches[:, :2, k, 5], wrenches[:, 2:, k, 6] = moment[:, :2, 2], moment[:, 2:, 2] - lead * pull[:, 2:, 2]
+    inner = np.linalg.solve(compliance, wrenches)
+    whole = np.einsum("kiap,kiaq->kpq", wrenches, inner, optimize=True)
+    free = whole[:, 3:, 3:]
+    left = whole[:, :3, :3] - whole[:, :3, 3:] @ np.linalg.solve(free, whole[:, 3:, :3])
+    return np.linalg.eigvalsh(left)[:, 0]
+
+
+def _ring(radius: float, wall: float) -> tuple[float, float]:
+    """Area and second moment of area."""
+    inside = radius - wall
+    return np.pi * (radius**2 - inside**2), np.pi / 4 * (radius**4 - inside**4)
+
+
 def forward(g: Heli4.Geometry, q: Array) -> Array:
     """(k, 4) -> (k, 4) by Newton's method on the four closures from home, a 4 x 4 solve a step."""
     base, radial = actuators(g)

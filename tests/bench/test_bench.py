@@ -44,6 +44,7 @@ PAIRS = {
     "inverse": (lambda: ROBOT.inverse(POSES), lambda: peers.inverse(ROBOT.geometry, POSES)),
     "forward": (lambda: ROBOT.forward(JOINTS), lambda: peers.forward(ROBOT.geometry, JOINTS)),
     "fvi": (lambda: ROBOT.fvi(POSES), lambda: peers.fvi(ROBOT.geometry, POSES, *FVI)),
+    "stiffness": (lambda: ROBOT.margin("stiffness", POSES), lambda: peers.stiffness(ROBOT, POSES)),
 }
 
 

@@ -60,11 +60,11 @@ class GoughStewartGeometry(GeometryRecord):
         symmetric_points(0.5, 12 * _DEG, 0.0), minimum=None, doc="A_i in R_0"
     )
     platform_points: tuple[tuple[float, ...], ...] = length(_platform(0.3, 12 * _DEG), minimum=None, doc="B_i in R_m")
-    leg_radius: float = length(0.020, doc="of the legs' cylinders, outside")
-    leg_wall: float = length(0.003, doc="of the legs' cylinders")
-    plate_thickness: float = length(0.020, doc="of the platform")
     Z: tuple[tuple[float, ...], ...] = frame(doc="Z, base frame R_0 in the reference frame R_f; [8.5]")
     E: tuple[tuple[float, ...], ...] = frame(doc="E, tool frame R_E in the platform's frame R_m; [8.5]")
+    leg_radius: float = length(0.020, doc="of the legs' cylinders, outside")
+    leg_wall: float = length(0.002, doc="of the legs' cylinders")
+    plate_thickness: float = length(0.020, doc="of the platform")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -159,18 +159,24 @@ class GoughStewartInertia(InertiaRecord):
     Attributes:
         screw_lead: of each cylinder [m/turn].
         drive: inertia of motor and screw about the screw's axis.
-        rod_mass, rod_length: the moving end of each leg, a thin uniform rod from B_i towards A_i; of length 0, a
-            particle at B_i. The other end stays near A_i, and its turning is left out.
-        platform_mass: in six equal particles at the B_i; the payload is a particle at the tool point.
+        rod_length: the moving end of each leg, a thin uniform rod from B_i towards A_i; of length 0, a particle at B_i.
+            The other end stays near A_i, and its turning is left out. None takes the least length of the legs.
+        rod_joint: mass of the joint at its end.
+        rod_mass: of the moving end without its joint; None takes that of a tube of `rod_length`.
+        platform_joint: mass of the platform's part of each joint, at B_i.
+        platform_mass: of the platform with its joints, in six equal particles at the B_i; None takes the plate, or the
+            bars, and the joints. The payload is a particle at the tool point.
         drive_train: screw, bearings and servo loop of each cylinder give way by 0.02 um for each N.
     """
 
     dimensions: ClassVar[Mapping[str, str]] = {"screw_lead": "length_per_turn", "rod_length": "length"}
     screw_lead: float = 0.010
     drive: float = 1.2e-4
-    rod_mass: float = 0.8
-    rod_length: float = 0.0
-    platform_mass: float = 12.0
+    rod_length: float | None = None
+    rod_joint: float = 0.05
+    rod_mass: float | None = None
+    platform_joint: float = 0.3
+    platform_mass: float | None = None
     drive_train: DriveTrain = field(default=DriveTrain(stiffness=5e7), kw_only=True)
 
     def __post_init__(self) -> None:

@@ -7,6 +7,7 @@ twists (v of O_E, omega) and wrenches (force, moment about O_E) are expressed in
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import Any
 
@@ -73,6 +74,11 @@ class GoughStewart(SixLegs):
         e = ca.reshape(g.E, 4, 4).T
         result: ca.SX = e[:3, :3].T @ (ca.reshape(g.platform_points, 3, 6) - ca.repmat(e[:3, 3], 1, 6))
         return result
+
+    @staticmethod
+    def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(3, 6) B_i in R_f."""
+        return ca.repmat(pose[:3], 1, 6) + GoughStewart.rotation(pose) @ GoughStewart.tool_points(g)
 
     @staticmethod
     def legs(pose: ca.SX, g: SimpleNamespace, twist: ca.SX | None = None) -> ca.SX:
@@ -210,10 +216,10 @@ class GoughStewart(SixLegs):
 
     # Masses and drawing.
 
-    def conditions(self) -> dict[str, Any]:
+    def conditions(self, records: Sequence[str] = ()) -> dict[str, Any]:
         """Home too, where the joints rest there."""
         at_home = {"home": self.home.tolist()} if self.ranges.rest is None else {}
-        return super().conditions() | at_home
+        return super().conditions(records) | at_home
 
     def passive_joints(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[PassiveJoint]:
         """Universal joints on the base and spherical ones on the platform, mounted along the legs at `ranges.rest`."""
@@ -232,28 +238,29 @@ class GoughStewart(SixLegs):
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Screws driven by the joints; rods, platform and payload carried by the pose."""
-        i, bodies = self.inertia, Bodies(self.inertia.rod_middle)
-        legs = self.legs(pose, g)
-        ends = self.base_points(g) + legs
-        shares = {0.0: 1 / 6, 0.5: 4 / 6, 1.0: 1 / 6} if i.rod_length else {0.0: 1.0}
-        for k in range(6):
+        i, bodies, legs = self.inertia, Bodies(), self.legs(pose, g)
+        ends, shortest = self.platform_points(pose, g), self.ranges.limits(6)[:, 0]
+        for k, leg in enumerate(self.members(pose, joints, g)[:6]):
             bodies.rotors.append(Rotor(i.drive * (TURN / i.screw_lead) ** 2, joints[k]))
+            length = max(float(shortest[k]), 0.0) if i.rod_length is None else i.rod_length
+            mass = self.structure.of(leg).density * leg.tube.area * length if i.rod_mass is None else i.rod_mass
+            shares = {0.0: 1 / 6, 0.5: 4 / 6, 1.0: 1 / 6} if length else {0.0: 1.0}
             for place, share in shares.items():
-                point = ends[:, k] - place * i.rod_length / ca.norm_2(legs[:, k]) * legs[:, k]
-                bodies.particles.append(Particle(f"leg {k + 1}", share * i.rod_mass, point))
-        self.platform_bodies(pose, ends, payload, bodies)
+                point = ends[:, k] - place * length / ca.norm_2(legs[:, k]) * legs[:, k]
+                bodies.particles.append(Particle(leg.name, share * mass + (0.0 if place else i.rod_joint), point))
+        self.platform_bodies(pose, joints, g, payload, bodies)
         return bodies
 
     def members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
         """The legs and the platform. Legs to a common point are joined there."""
         below, above = (np.array(points) for points in (self.geometry.base_points, self.geometry.platform_points))
         held = zip(shared_joints("A", below), shared_joints("B", above), strict=True)
-        base, legs = self.base_points(g), self.legs(pose, g)
+        base, ends = self.base_points(g), self.platform_points(pose, g)
         found = [
-            Member(f"leg {i + 1}", names, "leg", (Tube(base[:, i], base[:, i] + legs[:, i], g.leg_radius, g.leg_wall),))
+            Member(f"leg {i + 1}", names, "leg", (Tube(base[:, i], ends[:, i], g.leg_radius, g.leg_wall),))
             for i, names in enumerate(held)
         ]
-        return [*found, self.platform_member(base + legs, g)]
+        return [*found, self.platform_member(ends, g)]
 
     def statics(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[LimbStatics]:
         """Legs in tension, each a cylinder of the leg's own length."""

@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array, together
-from kinematics.machine import Bodies, Member, Particle, platform, shared_joints
+from kinematics.machine import Bodies, Member, Particle, mass_points, platform, shared_joints
 from kinematics.mathematics import angles, rotation, turn
 from kinematics.model import Mechanism, reached
 from kinematics.robots.gough_stewart.forward import ForwardSolution, solve_forward
@@ -62,10 +62,22 @@ class SixLegs(Mechanism):
         )
         return ca.diagcat(ca.SX.eye(3), rates)
 
-    def platform_bodies(self, pose: ca.SX, points: ca.SX, payload: float | ca.SX, bodies: Bodies) -> None:
-        """Adds the platform, in six equal particles at the B_i (3, 6), and the payload at the tool point."""
-        share = self.inertia.platform_mass / 6
+    @staticmethod
+    @abstractmethod
+    def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
+        """(3, 6) B_i."""
+
+    def platform_bodies(
+        self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX, bodies: Bodies
+    ) -> None:
+        """Adds the platform and the payload at the tool point."""
+        points, mass = self.platform_points(pose, g), self.inertia.platform_mass
+        share = self.inertia.platform_joint if mass is None else mass / 6
         bodies.particles.extend(Particle("platform", share, points[:, i]) for i in range(6))
+        if mass is None:
+            rest, moved = (self.members(at, joints, g)[-1] for at in (ca.SX(6, 1), pose))
+            own = mass_points(rest, moved, self.structure.of(moved).density)
+            bodies.particles.extend(Particle("platform", *point) for point in own)
         bodies.particles.append(Particle("platform", payload, pose[:3]))
 
     def platform_member(self, points: ca.SX, g: SimpleNamespace) -> Member:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import SimpleNamespace
+from types import MappingProxyType, SimpleNamespace
 from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from kinematics.machine import AXES, TURN, Bodies, Particle, Rotor
+from kinematics.machine import AXES, TURN, Bodies, Particle, Rotor, member_mass
 from kinematics.robots.heli4.geometry import UPPER
 from kinematics.robots.shared import ArmInertia, arms_and_rods
 
@@ -21,20 +21,28 @@ class Heli4Inertia(ArmInertia):
     """The masses of the arms and the plates.
 
     Attributes:
-        plate_masses: masses of the lower plate (limbs 1 and 2) and of the upper plate.
+        plate_fittings: what the lower plate (limbs 1 and 2) and the upper plate carry: bearings, nut, rods' joints.
+        plate_masses: masses of both plates; None takes those of their bars and fittings.
         tool: inertia of the tool about e_z; the payload is a point on the lower plate.
     """
 
-    plate_masses: tuple[float, float] = (0.55, 0.55)
+    _shapes = MappingProxyType({"plate_masses": (2,)})
+    plate_fittings: tuple[float, float] = (0.489, 0.489)
+    plate_masses: tuple[float, float] | None = None
     tool: float = 6e-4
 
 
 def bodies(robot: Heli4, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
     """Arms with their drives, rods, plates, payload and tool."""
     i, plates = robot.inertia, ("lower plate", "upper plate")
-    found = arms_and_rods(robot, pose, joints, g, i.rod_mass, [plates[int(k)] for k in UPPER])
+    found = arms_and_rods(robot, pose, joints, g, [plates[int(k)] for k in UPPER], g.parallelogram_width)
+    at_rest = {member.name: member for member in robot.members(ca.SX(4, 1), joints, g)}
+    masses = i.plate_masses or [
+        fitting + member_mass(at_rest[name], robot.structure.of(at_rest[name]).density)
+        for name, fitting in zip(plates, i.plate_fittings, strict=True)
+    ]
     above = pose[:3] + g.pitch / TURN * pose[3] * ca.DM([0, 0, 1])
-    lower = Particle(plates[0], i.plate_masses[0] + payload, pose[:3])
-    found.particles.extend([lower, Particle(plates[1], i.plate_masses[1], above)])
+    lower = Particle(plates[0], masses[0] + payload, pose[:3])
+    found.particles.extend([lower, Particle(plates[1], masses[1], above)])
     found.rotors.append(Rotor(i.tool, pose[3], AXES[2]))
     return found

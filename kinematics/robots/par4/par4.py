@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from types import SimpleNamespace
+from types import MappingProxyType, SimpleNamespace
 
 import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
-from kinematics.machine import AXES, TURN, Bodies, Member, Particle, Rotor, Tube, angle, bar, length, ratio
+from kinematics.machine import AXES, TURN, Bodies, Member, Particle, Rotor, Tube, angle, bar, length, member_mass, ratio
 from kinematics.margins import INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.mathematics import determinant, distinct, volume, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, joined_to_home, polished
@@ -75,12 +75,15 @@ class Par4Inertia(ArmInertia):
     """The masses of the arms and the platform.
 
     Attributes:
-        half_masses: masses of the two halves.
+        half_fittings: what each half carries: the rods' joints and the bars' bearings.
+        half_masses: masses of the two halves; None takes those of their bars and fittings.
         bars_mass, bars_inertia: mass of both bars and the gear, at the tool point, and their inertia about e_z.
         tool: inertia of the tool about e_z; the payload is a point at the tool point.
     """
 
-    half_masses: tuple[float, float] = (0.35, 0.35)
+    _shapes = MappingProxyType({"half_masses": (2,)})
+    half_fittings: tuple[float, float] = (0.268, 0.268)
+    half_masses: tuple[float, float] | None = None
     bars_mass: float = 0.25
     bars_inertia: float = 5e-4
     tool: float = 2e-4
@@ -171,9 +174,13 @@ class Par4(PairedArms):
         """Arms, rods, halves, bars, tool, payload."""
         i, psi, halves = self.inertia, pose[3] / g.amplification, ("half 1", "half 2")
         half = self.half_bar(psi, g)
-        bodies = arms_and_rods(self, pose, joints, g, i.rod_mass, [halves[int(side > 0)] for side in _HALF])
-        for link, mass, side in zip(halves, i.half_masses, (-1, 1), strict=True):
-            bodies.particles.append(Particle(link, mass, pose[:3] + side * half))
+        platforms = [halves[int(side > 0)] for side in _HALF]
+        bodies = arms_and_rods(self, pose, joints, g, platforms, g.parallelogram_width)
+        at_rest = self.members(ca.SX(4, 1), joints, g)[-2:]
+        for k, (member, side) in enumerate(zip(at_rest, (-1, 1), strict=True)):
+            own = i.half_fittings[k] + member_mass(member, self.structure.of(member).density)
+            mass = own if i.half_masses is None else i.half_masses[k]
+            bodies.particles.append(Particle(halves[k], mass, pose[:3] + side * half))
         bodies.particles.append(Particle("bars", i.bars_mass + payload, pose[:3]))
         bodies.rotors.extend([Rotor(i.bars_inertia, psi, AXES[2]), Rotor(i.tool, pose[3], AXES[2])])
         return bodies
@@ -184,7 +191,7 @@ class Par4(PairedArms):
         ends, thick = cls.platform_points(pose, g), g.bar_thickness / 2
         middle = cls.half_bar(pose[3] / g.amplification, g)
         at = {"half 1": (pose[:3] - middle, (0, 1)), "half 2": (pose[:3] + middle, (2, 3))}
-        platform = [bar("bars", tuple(at), "plate", at["half 1"][0], at["half 2"][0], thick)]
+        platform = [bar("bars", tuple(at), "plate", at["half 1"][0], at["half 2"][0], thick)._replace(link="crank")]
         held = studs(ends, cls.limbs(g).axes(), g.parallelogram_width)
         for name, (centre, limbs) in at.items():
             spokes = [Tube(centre, ends[:, i], thick, thick) for i in limbs]

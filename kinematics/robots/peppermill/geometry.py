@@ -47,9 +47,12 @@ class PeppermillInertia(InertiaRecord):
     Attributes:
         motor: inertia of each motor with its nut, about its axis.
         carriage_mass, carriage: mass of the part that slides along a drive axis, and its inertia about that axis.
+        proximal_hub, proximal_joint: masses at a third of a proximal link, where it is joined to its carriage, and at
+            its elbow.
         proximal_mass, proximal_centre, proximal_factor: a proximal link's mass, its centre of mass c as a fraction of
-            r_i, and its inertia about the drive axis over m c^2.
-        distal_mass: mass of a distal link with its joints.
+            r_i, and its inertia about the drive axis over m c^2; None takes those of tube, hub and joint.
+        distal_joint: mass of the joint at each end of a distal link.
+        distal_mass: mass of a distal link with its joints; None takes that of tube and joints.
         nut_mass: mass of each nut of the platform's screws.
         platform_mass, tool: mass of the platform with screws and tool, and its inertia about e_z; the payload is a
             point at C.
@@ -59,10 +62,13 @@ class PeppermillInertia(InertiaRecord):
     motor: float = 3.0e-4
     carriage_mass: float = 1.5
     carriage: float = 1.0e-3
-    proximal_mass: float = 0.5
-    proximal_centre: float = 0.40
-    proximal_factor: float = 1.25
-    distal_mass: float = 0.4
+    proximal_hub: float = 0.353
+    proximal_joint: float = 0.018
+    proximal_mass: float | None = None
+    proximal_centre: float | None = None
+    proximal_factor: float | None = None
+    distal_joint: float = 0.04
+    distal_mass: float | None = None
     nut_mass: float = 0.2
     platform_mass: float = 0.8
     tool: float = 6.0e-4

@@ -9,6 +9,7 @@ of the paper. If an equation in print is wrong, the expression here follows from
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cached_property
 from types import SimpleNamespace
 from typing import Any
@@ -29,7 +30,9 @@ from kinematics.machine import (
     Rod,
     Rotor,
     Tube,
+    arm_mass,
     bar,
+    rod_mass,
 )
 from kinematics.margins import INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.model import Build, FviBounds, Mechanism, Mode, Model, by_name
@@ -87,10 +90,10 @@ class Peppermill(Mechanism):
             return limbs.SIDES[0]
         return (1 if first > 0.0 else -1, 1 if second > 0.0 else -1)
 
-    def conditions(self) -> dict[str, Any]:
+    def conditions(self, records: Sequence[str] = ()) -> dict[str, Any]:
         """As in the base, with unusual sides too, as the ranges of the distal links' ends depend on them."""
         sides = {} if self.sides == limbs.SIDES[0] else {"sides": self.sides}
-        return super().conditions() | sides
+        return super().conditions(records) | sides
 
     # The closure and its closed forms.
 
@@ -217,24 +220,28 @@ class Peppermill(Mechanism):
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Motors, carriages, proximal and distal links, nuts, platform, payload."""
-        i, bodies = self.inertia, Bodies(self.inertia.rod_middle)
+        i, bodies = self.inertia, Bodies()
+        links = self.structure.link.density * _link(pose[:3], pose[:3], g).area  # mass for each metre
+        given = i.proximal_mass, i.proximal_centre, i.proximal_factor
         _, carriages, elbows, nuts = self.points(pose, joints, g)
         eta = self.drives(g) @ joints
         bodies.rotors.extend(Rotor(i.motor, eta[k]) for k in range(4))
         for limb in range(2):
             carriage, link = carriages[:, limb], elbows[:, limb] - carriages[:, limb]
-            centre = i.proximal_centre * g.proximal_lengths[limb]
-            own = (i.proximal_factor - 1) * i.proximal_mass * centre**2  # beyond the particle at the centre of mass
+            mass, centre, factor = arm_mass(links * g.proximal_lengths[limb], i.proximal_hub, i.proximal_joint, given)
+            own = (factor - 1) * mass * (centre * g.proximal_lengths[limb]) ** 2  # beyond the particle at the centre
             slide, proximal, nut = (f"{name} {limb + 1}" for name in ("carriage", "proximal link", "nut"))
             bodies.particles.extend(
                 [
                     Particle(slide, i.carriage_mass, carriage),
-                    Particle(proximal, i.proximal_mass, carriage + i.proximal_centre * link),
+                    Particle(proximal, mass, carriage + centre * link),
                     Particle(nut, i.nut_mass, nuts[:, limb]),
                 ]
             )
-            bodies.rotors.append(Rotor(i.carriage + own, joints[2 + limb], AXES[limb]))
-            bodies.rods.append(Rod(i.distal_mass, (nut, proximal), nuts[:, limb], elbows[:, limb]))
+            bodies.rotors.append(Rotor(i.carriage, joints[2 + limb], AXES[limb]))
+            bodies.rotors.append(Rotor(own, joints[2 + limb], AXES[limb], proximal))
+            whole, middle = rod_mass(links * g.distal_lengths[limb], i.distal_joint, i.distal_mass, i.rod_middle)
+            bodies.rods.append(Rod(whole, middle, (nut, proximal), nuts[:, limb], elbows[:, limb]))
         bodies.particles.append(Particle("platform", i.platform_mass + payload, pose[:3]))
         bodies.rotors.append(Rotor(i.tool, pose[3], AXES[2]))
         return bodies
@@ -264,12 +271,14 @@ class Peppermill(Mechanism):
     def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
         """Proximal and distal links, and the screws between the nuts; all at `points_apart`."""
         carriages, elbows, nuts = cls.points_apart(pose, joints, g)
-        found = [bar("screws", ("nut 1", "nut 2"), "screw", nuts[:, 0], nuts[:, 1], g.screw_radius)]
+        screws = bar("screws", ("nut 1", "nut 2"), "screw", nuts[:, 0], nuts[:, 1], g.screw_radius)
+        found = [screws._replace(link="tool")]
         for i, k in enumerate(("1", "2")):
             slide, elbow, nut = f"carriage {k}", f"elbow {k}", f"nut {k}"
+            near, far = (_link(*ends, g) for ends in ((carriages[:, i], elbows[:, i]), (elbows[:, i], nuts[:, i])))
             found += [
-                Member(f"proximal link {k}", (slide, elbow), "link", (_link(carriages[:, i], elbows[:, i], g),)),
-                Member(f"distal link {k}", (elbow, nut), "link", (_link(elbows[:, i], nuts[:, i], g),)),
+                Member(f"proximal link {k}", (slide, elbow), "link", (near,), f"proximal {k}"),
+                Member(f"distal link {k}", (elbow, nut), "link", (far,), f"rod {k}"),
             ]
         return found
 

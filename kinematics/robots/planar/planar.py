@@ -27,6 +27,7 @@ from kinematics.machine import (
     Points,
     Tube,
     length,
+    mass_points,
     platform,
     shared_joints,
 )
@@ -59,8 +60,8 @@ class PlanarGeometry(GeometryRecord):
     platform_points: tuple[tuple[float, ...], ...] = length(
         triangle(0.15), minimum=None, doc="B_i, in the platform's frame"
     )
-    link_radius: float = length(0.010, doc="of the legs' links, outside")
-    link_wall: float = length(0.002, doc="of the legs' links")
+    link_radius: float = length(0.015, doc="of the legs' links, outside")
+    link_wall: float = length(0.003, doc="of the legs' links")
     plate_thickness: float = length(0.010, doc="of the platform")
 
     def __post_init__(self) -> None:
@@ -90,14 +91,20 @@ class PlanarInertia(InertiaRecord):
 
     Attributes:
         drive: a prismatic drive's moving inertia as seen at its joint [kg].
-        link_mass: mass of each leg's link; if the link changes its length, half is at each end.
-        platform_mass: three equal particles at the B_i; the payload is a particle at the tool point.
+        link_joint: mass of the joint at each end of a link.
+        link_mass: mass of each leg's link; None takes a tube, of home's length where it changes, with its joints. If
+            the link changes its length, half is at each end.
+        platform_joint: mass of the platform's part of each joint, at B_i.
+        platform_mass: three equal particles at the B_i; None takes the plate and the joints. The payload is a particle
+            at the tool point.
         drive_train: screw, bearings and servo loop give way by 0.5 um for each N.
     """
 
     drive: float = 1.0
-    link_mass: float = 0.3
-    platform_mass: float = 1.2
+    link_joint: float = 0.03
+    link_mass: float | None = None
+    platform_joint: float = 0.137
+    platform_mass: float | None = None
     drive_train: DriveTrain = field(default=DriveTrain(stiffness=2e6), kw_only=True)
 
 
@@ -150,10 +157,17 @@ class Planar(Mechanism):
         result: ca.SX = 1.5 * ca.sqrt(ca.sumsqr(points - ca.repmat(ca.sum2(points) / 3, 1, 3)))
         return result
 
-    def platform_bodies(self, pose: ca.SX, g: SimpleNamespace, payload: float | ca.SX, bodies: Bodies) -> None:
+    def platform_bodies(
+        self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX, bodies: Bodies
+    ) -> None:
         """Adds platform and payload."""
-        points, share = self.platform_points(pose, g), self.inertia.platform_mass / 3
+        points, mass = self.platform_points(pose, g), self.inertia.platform_mass
+        share = self.inertia.platform_joint if mass is None else mass / 3
         bodies.particles.extend(Particle("platform", share, points[:, i]) for i in range(3))
+        if mass is None:
+            rest, moved = (self.members(at, joints, g)[-1] for at in (ca.SX(3, 1), pose))
+            own = mass_points(rest, moved, self.structure.of(moved).density)
+            bodies.particles.extend(Particle("platform", *point) for point in own)
         bodies.particles.append(Particle("platform", payload, ca.vertcat(pose[:2], 0)))
 
     def members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:

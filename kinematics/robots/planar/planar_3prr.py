@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.machine import TURN, Bodies, JointRanges, Pair, Rod, Rotor, angle, length
+from kinematics.machine import TURN, Bodies, JointRanges, Pair, Rod, Rotor, angle, length, rod_mass
 from kinematics.model import FviBounds, Mode
 from kinematics.robots.planar.planar import AZIMUTHS, Planar, PlanarGeometry, PlanarInertia
 from kinematics.robots.shared import radial_directions
@@ -98,11 +98,12 @@ class Planar3PRR(Planar):
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Drives, rods and platform."""
-        bodies = Bodies(self.inertia.rod_middle)
+        own, bodies = self.inertia, Bodies()
         slides, ends = self.circles(joints, g)[0], self.platform_points(pose, g)
-        for i in range(3):
-            bodies.rotors.append(Rotor(self.inertia.drive, joints[i]))
-            links = (f"slide {i + 1}", "platform")
-            bodies.rods.append(Rod(self.inertia.link_mass, links, slides[:, i], ends[:, i]))
-        self.platform_bodies(pose, g, payload, bodies)
+        for i, link in enumerate(self.members(pose, joints, g)[:3]):
+            bodies.rotors.append(Rotor(own.drive, joints[i]))
+            tube = self.structure.of(link).density * self.link(slides[:, i], ends[:, i], g).area * g.rod_lengths[i]
+            mass, middle = rod_mass(tube, own.link_joint, own.link_mass, own.rod_middle)
+            bodies.rods.append(Rod(mass, middle, (f"slide {i + 1}", "platform"), slides[:, i], ends[:, i]))
+        self.platform_bodies(pose, joints, g, payload, bodies)
         return bodies

@@ -15,6 +15,7 @@ from kinematics.machine import (
     Connection,
     JointRanges,
     Link,
+    Member,
     Pair,
     Particle,
     Reference,
@@ -110,10 +111,18 @@ class Planar3RPR(Planar):
         chain.append(Link("platform", None, (*slides, TreeJoint("theta", "hinge", AXES[2], place, pose[2]))))
         return Tree(tuple(chain), connections=tuple(connections))
 
+    def members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+        """Legs by the links' names."""
+        return [m._replace(link=m.name.replace("rod", "leg")) for m in super().members(pose, joints, g)]
+
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Drives that the joints move; platform, and half of each leg at its end. The other half stays on the base."""
-        i, ends, bodies = self.inertia, self.platform_points(pose, g), Bodies(self.inertia.rod_middle)
-        bodies.rotors.extend(Rotor(i.drive, joints[k]) for k in range(3))
-        bodies.particles.extend(Particle(f"leg {k + 1}", i.link_mass / 2, ends[:, k]) for k in range(3))
-        self.platform_bodies(pose, g, payload, bodies)
+        own, ends, bodies = self.inertia, self.platform_points(pose, g), Bodies()
+        at_home = self.leg_lengths(ca.SX(self.home), g)
+        for k, leg in enumerate(self.members(pose, joints, g)[:3]):
+            bodies.rotors.append(Rotor(own.drive, joints[k]))
+            tube = self.structure.of(leg).density * self.link(ends[:, k], ends[:, k], g).area * at_home[k]
+            mass = tube + 2 * own.link_joint if own.link_mass is None else own.link_mass
+            bodies.particles.append(Particle(f"leg {k + 1}", mass / 2, ends[:, k]))
+        self.platform_bodies(pose, joints, g, payload, bodies)
         return bodies

@@ -43,16 +43,29 @@ class Planar3RRRInertia(PlanarInertia):
     """Arms with rotary drives [kg m^2] in place of sliders.
 
     Attributes:
+        arm_hub, arm_joint: masses at a third of an arm, where it is joined to its drive, and at its end.
         arm_mass, arm_centre, arm_factor: the arm's mass, its centre of mass c as a fraction of L_i, and its inertia
-            about the joint over m c^2.
+            about the joint over m c^2; None takes those of tube, hub and joint.
         drive_train: gear and servo loop give way by 1e-4 rad for each N m.
     """
 
     drive: float = 0.005
-    arm_mass: float = 0.4
-    arm_centre: float = 0.5
-    arm_factor: float = 4 / 3
+    arm_hub: float = 0.16
+    arm_joint: float = 0.03
+    arm_mass: float | None = None
+    arm_centre: float | None = None
+    arm_factor: float | None = None
     drive_train: DriveTrain = field(default=DriveTrain(stiffness=1e4), kw_only=True)
+
+    @property
+    def rod_joint(self) -> float:
+        """As for other arms and rods."""
+        return self.link_joint
+
+    @property
+    def rod_mass(self) -> float | None:
+        """As for other arms and rods."""
+        return self.link_mass
 
 
 @dataclass(frozen=True)
@@ -111,6 +124,6 @@ class Planar3RRR(Planar, RotaryLimbs):
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Arms, drives, rods and platform."""
-        bodies = arms_and_rods(self, pose, joints, g, self.inertia.link_mass, ["platform"] * 3)
-        self.platform_bodies(pose, g, payload, bodies)
+        bodies = arms_and_rods(self, pose, joints, g, ["platform"] * 3)
+        self.platform_bodies(pose, joints, g, payload, bodies)
         return bodies

@@ -28,7 +28,7 @@ def members(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace
         for name, side in sides.items():
             aside, held = ca.vertcat(0, 0, side * g.parallelogram_width), (f"A{i + 1}", _HELD_AT[i])
             tube = Tube(rails[:, i] + aside, platform[:, i] + aside, g.rod_radius, g.rod_wall)
-            found.append(Member(f"rod {i + 1}{name}", held, "rod", (tube,)))
+            found.append(Member(f"rod {i + 1}{name}", held, "rod", (tube,), f"rod {i + 1}"))
     middle, half = (platform[:, 0] + platform[:, 4]) / 2, g.platform_thickness / 2
     stud = ca.vertcat(0, 0, g.parallelogram_width / 2)
     bars = ((platform[:, 0], platform[:, 4]), (middle, platform[:, 2]), (platform[:, 2] - stud, platform[:, 2] + stud))

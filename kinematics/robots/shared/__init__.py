@@ -1,9 +1,9 @@
 """Parts that several mechanisms use: rotary limbs, paired rods, and a check for limbs that coincide."""
 
+from kinematics.robots.shared.arm_and_rod_members import SIDES, limb_members, studs
 from kinematics.robots.shared.arm_masses import ArmInertia, arms_and_rods
 from kinematics.robots.shared.coincident_limbs import ALIKE, HalvesGeometry, twins
 from kinematics.robots.shared.internal_determinant import INTERNAL_DETERMINANT
-from kinematics.robots.shared.limb_members import SIDES, limb_members, studs
 from kinematics.robots.shared.limb_statics import beam, rod_statics, rods_of
 from kinematics.robots.shared.paired_arms import PairedArms
 from kinematics.robots.shared.paired_rods import RodLevel, means_and_differences, outline

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import casadi as ca
 
 from kinematics.machine import Beam, Cut, LimbStatics, Member, Section, Structure, Tube, rod_cut
-from kinematics.robots.shared.limb_members import SIDES
+from kinematics.robots.shared.arm_and_rod_members import SIDES
 
 if TYPE_CHECKING:
     from kinematics.robots.shared.rotary_limbs import RotaryLimbs
@@ -66,6 +66,7 @@ def arm_statics(robot: RotaryLimbs, pose: ca.SX, joints: ca.SX, g: SimpleNamespa
         efforts = ca.SX(count, len(own))
         efforts[i, :] = -axes[:, i].T @ root
         hung = rod_statics(rods_of(i, members), structure, wrenches[:, own], along, lengths[i], efforts)
-        cuts = (Cut(member.name, arm.along, force, root), *hung.cuts)
-        found.append(hung._replace(compliance=hung.compliance + arm.compliance(force, moment), cuts=cuts))
+        ends = (Cut(member.name, arm.along, force, v) for v in (root, moment))
+        compliance = hung.compliance + arm.compliance(force, moment)
+        found.append(hung._replace(compliance=compliance, cuts=(*ends, *hung.cuts)))
     return found

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import casadi as ca
 
-from kinematics.robots.shared.limb_members import SIDES
+from kinematics.robots.shared.arm_and_rod_members import SIDES
 from kinematics.robots.shared.paired_rods import RodLevel
 from kinematics.robots.shared.rotary_limbs import RotaryLimbs
 

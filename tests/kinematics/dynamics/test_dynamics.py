@@ -10,10 +10,15 @@ from kinematics.robots.heli4.bodies import Heli4Inertia
 from tests.kinematics.by_hand import OBLIQUE, ByHand, cylinder
 from tests.kinematics.dynamics.test_motion import TIMES, pose_and_derivatives
 from tests.kinematics.numeric import differences, lagrange, slope
+from tests.kinematics.weighed import HELI4
 
 G = 9.80665
-HEAVY = Heli4Inertia(drive=0.02, arm_mass=1.3, arm_centre=0.55, arm_factor=1.4, rod_mass=0.4, plate_masses=(0.7, 0.3))
-ROBOTS = pytest.mark.parametrize("robot", [Heli4(), Heli4(OBLIQUE, HEAVY)], ids=["prototype", "oblique and heavy"])
+HEAVY = Heli4Inertia(
+    drive=0.02, arm_mass=1.3, arm_centre=0.55, arm_factor=1.4, rod_mass=0.4, rod_middle=0.0, plate_masses=(0.7, 0.3)
+)
+ROBOTS = pytest.mark.parametrize(
+    "robot", [Heli4(inertia=HELI4), Heli4(OBLIQUE, HEAVY)], ids=["prototype", "oblique and heavy"]
+)
 
 
 def potential(robot, payload, pose):

@@ -1,5 +1,6 @@
 """Leg forces of a hexapod against the energy of its masses, written independently: by numbers, without Jacobians."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -7,12 +8,12 @@ import pytest
 
 from kinematics import GoughStewart, actuator_motion, inverse_dynamics
 from kinematics.mathematics.orientation import rotation
-from kinematics.robots.gough_stewart.geometry import GoughStewartInertia
 from tests.kinematics.numeric import differences, lagrange, slope
+from tests.kinematics.weighed import GOUGH_STEWART
 
 G = 9.80665
-HEAVY = GoughStewart(inertia=GoughStewartInertia(screw_lead=0.02, drive=5e-4, rod_mass=1.7, platform_mass=7.0))
-ROBOTS = pytest.mark.parametrize("robot", [GoughStewart(), HEAVY], ids=["default", "heavy rods"])
+HEAVY = GoughStewart(inertia=replace(GOUGH_STEWART, screw_lead=0.02, drive=5e-4, rod_mass=1.7, platform_mass=7.0))
+ROBOTS = pytest.mark.parametrize("robot", [GoughStewart(inertia=GOUGH_STEWART), HEAVY], ids=["default", "heavy rods"])
 SWING = np.array([0.05, 0.06, 0.04, 0.4, 0.35, 0.5])
 PACE, PHASE = np.array([3.0, 2.5, 4.1, 3.3, 2.2, 1.7]), np.array([0.3, 1.1, 2.0, 4.0, 5.1, 0.7])
 TIMES = np.linspace(0.0, 3.0, 151)

@@ -160,11 +160,11 @@ def test_another_mechanisms_ranges_are_refused() -> None:
 
 def test_robots_of_other_ranges_or_working_modes_are_told_apart_by_their_conditions() -> None:
     same = Heli4(home=[0.0, 0.0, -0.71, 0.0])
-    assert Heli4().conditions_digest == same.conditions_digest
-    assert Heli4().conditions_digest != Heli4(ranges=Heli4.Ranges(passive=(1.0, 0.9))).conditions_digest
-    assert Heli4().conditions_digest != Heli4(home=[0.0, 0.0, 0.7, 0.0]).conditions_digest
+    assert Heli4().conditions_digest() == same.conditions_digest()
+    assert Heli4().conditions_digest() != Heli4(ranges=Heli4.Ranges(passive=(1.0, 0.9))).conditions_digest()
+    assert Heli4().conditions_digest() != Heli4(home=[0.0, 0.0, 0.7, 0.0]).conditions_digest()
     legs = GoughStewart(home=[0.0, 0.0, 0.61, 0.0, 0.0, 0.0])
-    assert GoughStewart().conditions_digest != legs.conditions_digest  # whose joints rest at home
+    assert GoughStewart().conditions_digest() != legs.conditions_digest()  # whose joints rest at home
 
 
 def test_a_peppermill_whose_links_point_elsewhere_is_told_apart() -> None:
@@ -174,4 +174,4 @@ def test_a_peppermill_whose_links_point_elsewhere_is_told_apart() -> None:
     assert other.mode == usual.mode
     assert other.sides != usual.sides
     assert other.margin("passive_joint", other.home) != pytest.approx(usual.margin("passive_joint", other.home))
-    assert other.conditions_digest != usual.conditions_digest
+    assert other.conditions_digest() != usual.conditions_digest()

@@ -24,10 +24,10 @@ PATHS = {
 }
 
 
-def with_uniform_rods(robot):
-    """Rods as bodies; a hexapod's are 0.3 m long."""
-    changes = {"rod_length": 0.3} if isinstance(robot, GoughStewart) else {"rod_middle": UNIFORM}
-    return type(robot)(robot.geometry, replace(robot.inertia, **changes))
+def with_rods(robot, uniform):
+    """Rods as bodies, or their masses at their ends; a hexapod's are 0.3 m long."""
+    field, values = ("rod_length", (0.0, 0.3)) if isinstance(robot, GoughStewart) else ("rod_middle", (0.0, UNIFORM))
+    return robot.with_inertia(replace(robot.inertia, **{field: values[int(uniform)]}))
 
 
 def cycle(kind, half, times):

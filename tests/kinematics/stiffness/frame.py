@@ -1,5 +1,7 @@
 """A frame of finite elements: beams, bars, springs and rigid links in space. It knows nothing of the project."""
 
+from itertools import pairwise
+
 import numpy as np
 
 E_Z = np.array([0.0, 0.0, 1.0])
@@ -46,7 +48,7 @@ class Frame:
         freedoms = np.concatenate([6 * n + np.arange(6) for n in nodes])
         self.stiffness.append((freedoms, matrix))
 
-    def beam(self, start, end, material, section, elements=4):
+    def beam(self, start, end, material, section, elements=3):
         """A clamped beam between two nodes, in several elements."""
         between = np.linspace(self.places[start], self.places[end], elements + 1)
         nodes = [start, *(self.node(p) for p in between[1:-1]), end]
@@ -57,15 +59,24 @@ class Frame:
         y /= np.linalg.norm(y)
         turned = np.kron(np.eye(4), np.array([x, y, np.cross(x, y)]))
         matrix = turned.T @ beam_matrix(length, material, section) @ turned
-        for pair in zip(nodes[:-1], nodes[1:], strict=True):
+        for pair in pairwise(nodes):
             self._add(pair, matrix)
 
-    def bar(self, start, end, stiffness):
-        """A spring of two force members [N/m]; the turns of its ends are released."""
-        along = self.places[end] - self.places[start]
-        row = np.zeros(12)
-        row[:3], row[6:9] = -along / np.linalg.norm(along), along / np.linalg.norm(along)
-        self._add((start, end), stiffness * np.outer(row, row))
+    def bar(self, one, start, two, end, stiffness):
+        """A spring [N/m] between ball joints at two places of the bodies of two nodes."""
+        along = (end - start) / np.linalg.norm(end - start)
+        arms = np.cross(start - self.places[one], along), np.cross(end - self.places[two], along)
+        row = np.concatenate([-along, -arms[0], along, arms[1]])
+        self._add((one, two), stiffness * np.outer(row, row))
+
+    def sprung(self, one, two, direction, compliance):
+        """Two nodes at one place are one, but that a force along a direction parts them by its compliance."""
+        row = np.concatenate([direction, np.zeros(3)])
+        self.joint(one, two, np.linalg.svd(row[None])[2][1:])
+        if compliance:
+            self._add((one, two), np.kron([[1, -1], [-1, 1]], np.outer(row, row)) / compliance)
+        else:
+            self.joint(one, two, row)
 
     def ground(self, node, directions, matrix):
         """Holds a node: along directions (r, 6) by springs `matrix` (r, r), and firmly in all others."""

@@ -7,7 +7,7 @@ from tests.kinematics.stiffness.frame import E_Z, Frame, ring
 X, Y, Z, RX, RY, RZ = np.eye(6)
 
 
-def arm(frame, robot, base, elbow, axis, drive, material, section):
+def arm(frame, base, elbow, axis, drive, material, section):
     """A beam on a drive that turns about an axis; returns the node at its end."""
     root, tip = frame.node(base), frame.node(elbow)
     frame.ground(root, np.concatenate([np.zeros(3), axis]), drive)
@@ -17,12 +17,9 @@ def arm(frame, robot, base, elbow, axis, drive, material, section):
 
 def rod(frame, robot, carrier, start, platform, end, material, section):
     """A rod between ball joints on two bodies, with the joints' own stiffness in series."""
-    one, two = frame.node(start), frame.node(end)
-    frame.rigid(carrier, one)
-    frame.rigid(platform, two)
     length = np.linalg.norm(np.subtract(end, start))
     give = length / (material.modulus * section[0]) + 2 / robot.structure.joint_stiffness
-    frame.bar(one, two, 1 / give)
+    frame.bar(carrier, start, platform, end, 1 / give)
 
 
 def rotary(frame, robot, pose, bodies, width):
@@ -33,7 +30,7 @@ def rotary(frame, robot, pose, bodies, width):
     for i, body in enumerate(bodies):
         base, elbow = lines[f"arm {i + 1}"]
         axis = np.cross(E_Z, arm_direction(robot, i))
-        tip = arm(frame, robot, base, elbow, axis, drive[i], s.arm, ring(g.arm_radius, g.arm_wall))
+        tip = arm(frame, base, elbow, axis, drive[i], s.arm, ring(g.arm_radius, g.arm_wall))
         for side in (0.0,) if width is None else (-0.5, 0.5):
             aside = side * (width or 0.0) * axis
             rod(frame, robot, tip, elbow + aside, body, ends[i] + aside, s.rod, ring(g.rod_radius, g.rod_wall))
@@ -137,7 +134,7 @@ def planar(robot, pose):
     for i, drive in enumerate(robot.inertia.drive_train.of_actuators("stiffness", 3)):
         base, centre, end = lines[f"leg {i + 1}"]
         if hasattr(g, "arm_lengths"):
-            carrier = arm(frame, robot, base, centre, E_Z, drive, s.link, section)
+            carrier = arm(frame, base, centre, E_Z, drive, s.link, section)
         else:
             along = end - base
             if hasattr(g, "rail_angles"):
@@ -170,15 +167,7 @@ def peppermill(robot, pose):
         frame.beam(far, end, material, section)
         along = (nut_place - elbow) / np.linalg.norm(nut_place - elbow)
         pinned = frame.node(nut_place)
-        if give:  # the joints' give, along the link
-            row = np.concatenate([along, np.zeros(3)])
-            frame.joint(end, pinned, np.linalg.svd(row[None])[2][1:])
-            frame._add(
-                (end, pinned),
-                np.block([[1, -1], [-1, 1]]).repeat(6, 0).repeat(6, 1) * np.tile(np.outer(row, row), (2, 2)) / give,
-            )
-        else:
-            frame.rigid(end, pinned)
+        frame.sprung(end, pinned, along, give)
         frame.rigid(pinned, tip)
         frame.hinge(tip, nut, axis)
         frame.joint(tool, nut, [X, Y, RX, RY])  # the nut slides and turns on the screw, by its lead

@@ -194,11 +194,11 @@ def test_geometry_is_frozen_hashable_and_comes_back_from_its_vector_and_dictiona
     g = Geometry(Z=random_frame(np.random.default_rng(6)))
     assert g == Geometry.from_vector(g.vector()) == Geometry(**g.as_dict())
     assert hash(g) == hash(Geometry(**g.as_dict()))
-    assert g.vector().shape == (sum(Geometry.sizes().values()),) == (18 + 18 + 16 + 16,)
+    assert g.vector().shape == (sum(Geometry.sizes().values()),) == (18 + 18 + 16 + 16 + 3,)
     np.testing.assert_array_equal(g.vector()[3:6], g.base_points[1])  # row by row
     np.testing.assert_array_equal(g.vector()[36:40], g.Z[0])
     symbols, named = Geometry.symbols()
-    assert symbols.shape == (68, 1)
+    assert symbols.shape == (71, 1)
     assert named.base_points.shape == (18, 1)
     assert len({g.digest, Geometry().digest}) == 2
     with pytest.raises(AttributeError):

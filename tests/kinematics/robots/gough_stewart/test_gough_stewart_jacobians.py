@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import casadi as ca
 import mpmath
 import numpy as np
@@ -11,7 +13,6 @@ from hypothesis import strategies as st
 
 from kinematics import FviBounds, GoughStewart, inverse_dynamics, joint_motion
 from kinematics.dynamics.drive_torque import GRAVITY
-from kinematics.robots.gough_stewart.geometry import GoughStewartInertia
 from tests.kinematics.robots.gough_stewart.gough_stewart_by_hand import (
     anywhere,
     leg_vectors,
@@ -23,6 +24,7 @@ from tests.kinematics.robots.gough_stewart.gough_stewart_by_hand import (
     random_robot,
     transform_of,
 )
+from tests.kinematics.weighed import GOUGH_STEWART
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -214,7 +216,7 @@ def test_symbolic_determinant_and_fvi_stay_small() -> None:
 
 
 def test_a_robot_at_rest_carries_its_weight_by_8_26() -> None:
-    inertia = GoughStewartInertia(rod_mass=0.7, platform_mass=9.0)
+    inertia = replace(GOUGH_STEWART, rod_mass=0.7, platform_mass=9.0)
     rng = np.random.default_rng(17)
     robot = GoughStewart(random_robot(rng).geometry, inertia)
     pose, rest = anywhere(rng, 1)[0], np.zeros(6)
@@ -232,7 +234,7 @@ def test_a_robot_at_rest_carries_its_weight_by_8_26() -> None:
 def test_leg_power_is_the_change_of_kinetic_and_potential_energy(seed: int) -> None:
     """Along pose(t) = p + v t + a t^2 / 2, by central differences of the energy written by hand."""
     rng = np.random.default_rng(seed)
-    robot = GoughStewart(GoughStewart.Geometry(Z=random_frame(rng)))
+    robot = GoughStewart(GoughStewart.Geometry(Z=random_frame(rng)), GOUGH_STEWART)
     start = robot.home
     v, a, payload, h = 0.3 * rng.normal(size=6), rng.normal(size=6), 4.0, 1e-4
     i = robot.inertia

@@ -10,6 +10,7 @@ from kinematics import FviBounds, Heli4, Peppermill, actuator_motion, inverse_dy
 from kinematics.dynamics.actuators import from_actuators, to_actuators
 from tests.kinematics.numeric import differences, slope
 from tests.kinematics.robots.peppermill.peppermill_by_hand import TURN, ByHand, assembled, box
+from tests.kinematics.weighed import PEPPERMILL
 
 GEOMETRY = Peppermill.Geometry()
 UNLIKE = Peppermill.Geometry((0.22, 0.17), (0.48, 0.61), 0.55, (0.09, -0.13), 0.06)
@@ -152,7 +153,7 @@ def energy(robot, t, payload):
 
 
 def test_motor_torques_times_motor_speeds_are_the_power():
-    robot, t = Peppermill(UNLIKE), np.linspace(0, 1, 50)
+    robot, t = Peppermill(UNLIKE, PEPPERMILL), np.linspace(0, 1, 50)
     pose, velocity, acceleration, _ = swing(t)
     torque = inverse_dynamics(robot, 1.0, pose, velocity, acceleration)
     power = (torque * actuator_motion(robot, *swing(t)).first).sum(-1)
@@ -161,7 +162,7 @@ def test_motor_torques_times_motor_speeds_are_the_power():
 
 def test_motors_bear_the_weight_that_virtual_work_asks():
     """At rest J_act^T tau is the gradient of the potential energy, by differences of the points by hand."""
-    robot, hand, pose = Peppermill(), ByHand(GEOMETRY), box(500, seed=14)
+    robot, hand, pose = Peppermill(inertia=PEPPERMILL), ByHand(GEOMETRY), box(500, seed=14)
     i, rest = robot.inertia, np.zeros_like(pose)
 
     def potential(p):

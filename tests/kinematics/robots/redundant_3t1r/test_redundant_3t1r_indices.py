@@ -20,8 +20,9 @@ from tests.kinematics.robots.redundant_3t1r.redundant_by_hand import (
     random_geometry,
     reachable,
 )
+from tests.kinematics.weighed import REDUNDANT
 
-ROBOT = Redundant3T1R()
+ROBOT = Redundant3T1R(inertia=REDUNDANT)
 in_region = st.tuples(st.floats(-5, 5), st.floats(-0.3, 0.3), st.floats(-0.6, 0.6), st.floats(-np.pi, np.pi))
 
 
@@ -200,7 +201,7 @@ def test_what_the_platform_needs_is_shared_with_the_least_norm():
 
 def test_dynamics_out_of_reach_is_nan_and_payload_counts():
     assert np.isnan(inverse_dynamics(ROBOT, 1.0, np.array([0.0, 0, 3, 0]), np.zeros(4), np.zeros(4))).all()
-    light = Redundant3T1R(inertia=replace(ROBOT.inertia, platform_mass=1.0))
+    light = Redundant3T1R(inertia=replace(REDUNDANT, platform_mass=1.0))
     pose, still = np.array([0.0, 0.1, 0.2, 0.3]), np.zeros(4)
     assert np.allclose(
         inverse_dynamics(light, 2.0, pose, still, still), inverse_dynamics(ROBOT, 0.0, pose, still, still)

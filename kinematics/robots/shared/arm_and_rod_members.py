@@ -33,7 +33,7 @@ def limb_members(
         found.append(Member(f"arm {i + 1}", arm_joints, "arm", tuple(shapes)))
         for name, aside in rods.items():
             tube = Tube(elbows[:, i] + aside, ends[:, i] + aside, g.rod_radius, g.rod_wall)
-            found.append(Member(f"rod {i + 1}{name}", held, "rod", (tube,)))
+            found.append(Member(f"rod {i + 1}{name}", held, "rod", (tube,), f"rod {i + 1}"))
     return found
 
 
