@@ -13,7 +13,7 @@ from kinematics.dynamics.drive_torque import (
 from kinematics.dynamics.frame_reaction import FrameReaction, frame_reaction
 from kinematics.dynamics.member_forces import MemberForces, member_forces
 from kinematics.dynamics.member_loads import LoadCase, MemberLoad, case_at_rest, case_in_motion
-from kinematics.dynamics.safety_factors import Size, Slack, WorstDirection, demands, safety_factors
+from kinematics.dynamics.member_safety import LARGEST, Size, Slack, WorstDirection, demands, safety_factors
 from kinematics.dynamics.stiffness import (
     Transmission,
     mass_matrix,
@@ -27,6 +27,7 @@ from kinematics.dynamics.stiffness import (
 
 __all__ = [
     "GRAVITY",
+    "LARGEST",
     "FrameReaction",
     "JointMotion",
     "LoadCase",

@@ -11,6 +11,7 @@ along it; and it bends the rod, which is a beam on two supports.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import NamedTuple
 
 import casadi as ca
@@ -120,6 +121,7 @@ def case_in_motion(robot: Mechanism, payload: float | ca.SX, velocity: ca.SX, ac
     return _case(robot, payload, velocity, acceleration, lambda vector: vector)
 
 
+@lru_cache(maxsize=16)
 def case_at_rest(robot: Mechanism) -> LoadCase:
     """Of the robot at rest with its own `load.payload`.
 
@@ -153,10 +155,11 @@ def _case(
     counts = [limb.wrenches.shape[1] for limb in robot.statics(model.pose, model.joints, model.g)]
     needed = columns(felt.at_pose(_load_on_freedoms(robot, bodies, felt, whole.wrenches.shape[0])))
     cuts, bearers = [], []
-    for cut in whole.cuts:
-        member, rod = members[cut.member], cut.moment.nnz() == 0
-        tube, material = _tube(member), getattr(robot.structure, member.material)
-        mass = [felt(tube.start), felt(tube.end)] if rod else _own(member, tube, material, cut.along, bodies, felt)
+    for k, cut in enumerate(whole.cuts):
+        member, names = members[cut.member], [other.member for other in whole.cuts]
+        tube, material = member.tube, robot.structure.of(member)
+        rod, root = names.count(cut.member) == 1, cut.member not in names[:k]
+        mass = (felt(tube.start), felt(tube.end)) if rod else _own(member, root, bodies, robot, felt)
         first, second = (columns(felt.at_pose(part)) for part in mass)
         none = ca.SX(*first.shape)
         own = {"force": none, "moment": none, "ends": (first, second)} if rod else {"force": first, "moment": second}
@@ -250,25 +253,28 @@ def _load_on_freedoms(robot: Mechanism, bodies: Bodies, felt: _Felt, count: int)
     return result
 
 
-def _own(
-    member: Member, tube: Tube, material: Material, along: ca.SX, bodies: Bodies, felt: _Felt
-) -> tuple[ca.SX, ca.SX]:
-    """Force (3,) and moment (3,) that the masses of an arm, and of the rods' ends on it, exert on its root."""
-    root, tip = felt(tube.start), felt(tube.end)
-    length, per_length = ca.norm_2(tube.end - tube.start), material.density * Section.of(tube).area
-    force = -per_length * length / 2 * (root + tip)
-    lever = -per_length * length**2 * (root / 6 + tip / 3)
-    hung = ca.SX(3, 1)
+def _own(member: Member, root: bool, bodies: Bodies, robot: Mechanism, felt: _Felt) -> tuple[ca.SX, ca.SX]:
+    """Force (3,) and moment (3,) that the masses beyond an arm's root or tip exert there: its own, if it is the root,
+    and the rods' ends at its tip. A member whose mass is a rod's in `bodies` counts as one that is clamped at its root.
+    """
+    tube, force, moment = member.tube, ca.SX(3, 1), ca.SX(3, 1)
+    own: list[tuple[float | ca.SX, ca.SX]] = [
+        (particle.mass, particle.point) for particle in bodies.particles if particle.link == member.name
+    ]
+    if root and not own:
+        mass = robot.structure.of(member).density * tube.area * ca.norm_2(tube.end - tube.start)
+        own = [(mass, (tube.start + tube.end) / 2)]
+    for weight, point in own if root else []:
+        force -= weight * felt(point)
+        moment -= weight * ca.cross(point - tube.start, felt(point))
+    for rotor in bodies.rotors if root else []:
+        if rotor.link == member.name and rotor.axis is not None:
+            moment -= rotor.inertia * felt.second(rotor.angle) * rotor.axis
     for k, rod in enumerate(bodies.rods):
         if member.name in rod.links:
             near, middle, far = bodies.rod_particles(k)
             end = (near, far)[rod.links.index(member.name)]
-            hung -= end.mass * felt(end.point) + middle.mass / 2 * felt(middle.point)
-    return force + hung, ca.cross(along, lever + length * hung)
-
-
-def _tube(member: Member) -> Tube:
-    tube = member.shapes[0]
-    if not isinstance(tube, Tube):
-        raise TypeError(f"{member.name}: a member with a cut needs a tube as its first shape")
-    return tube
+            hung = -end.mass * felt(end.point) - middle.mass / 2 * felt(middle.point)
+            force += hung
+            moment += ca.cross(tube.end - tube.start, hung) if root else 0
+    return force, moment

@@ -82,11 +82,13 @@ class Rotor(NamedTuple):
     Attributes:
         axis: (3,) the unit direction that it turns about; None if it slides, or if nobody knows it. The frame feels
             only rotors with a known axis.
+        link: whose mass it is, beyond that link's particles; None of a drive.
     """
 
     inertia: float | ca.SX
     angle: ca.SX
     axis: ca.SX | None = None
+    link: str | None = None
 
 
 class Rod(NamedTuple):

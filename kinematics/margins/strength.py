@@ -11,7 +11,16 @@ import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.dynamics import LoadCase, MemberLoad, Slack, WorstDirection, case_at_rest, demands, safety_factors
+from kinematics.dynamics import (
+    LARGEST,
+    LoadCase,
+    MemberLoad,
+    Slack,
+    WorstDirection,
+    case_at_rest,
+    demands,
+    safety_factors,
+)
 from kinematics.machine import Cut
 from kinematics.mathematics import near_inverse, row_sums
 from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
@@ -54,7 +63,7 @@ class Strength(Margin):
         turns = [scaling[:directions, k : k + directions] for k in range(count, scaling.shape[1], directions)]
         size = _Turned(acceleration, iter(turns))
         enclosed = _Enclosed.of(system, scaling[:count, :count], size)
-        shown = [enclosed.left - _REGULAR]
+        shown = [enclosed.left - _REGULAR, LARGEST - claim.bound]
         for cut, load in zip(case.cuts, case.loads(enclosed.forces), strict=True):
             needs = demands(load, size, enclosed.slack(cut))
             shown += [capacity - claim.bound * need for capacity, need in needs.values()]
@@ -111,7 +120,7 @@ class _Enclosed(NamedTuple):
         n, k = scaling.shape[0], system.forces
         error = scaling @ system.matrix - ca.SX.eye(n)
         found, moduli = first - error @ first, ca.fabs(error)
-        units = ca.SX.ones(n) if n == k else ca.sqrt(ca.sqrt(ca.sum2(scaling * scaling)))
+        units = ca.vertcat(ca.SX.ones(k), ca.sqrt(ca.sum2(scaling * scaling))[k:])  # else displacements dwarf forces
         away = (moduli @ units) / units
         sizes = ca.vertcat(*(size.modulus(first[i, :]) for i in range(n)))
         largest, left = ca.mmax(sizes / units), 1 - ca.mmax(away)

@@ -8,8 +8,7 @@ from kinematics.mathematics.homotopy import refine, track
 from kinematics.mathematics.jacobi_rotations import singular_values
 from kinematics.mathematics.linear_forms import LinearForms
 from kinematics.mathematics.orientation import angles, rotation, turn
-from kinematics.mathematics.polynomial_product import product
-from kinematics.mathematics.polynomial_roots import real_roots
+from kinematics.mathematics.polynomials import product, real_roots
 from kinematics.mathematics.positive_definite import (
     cholesky,
     lower_solved,

@@ -8,6 +8,7 @@ a characteristic length turns rotations into lengths.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import reduce
 
@@ -101,8 +102,8 @@ def fvi(j_mw: ca.SX, bounds: FviBounds) -> ca.SX:
 
 
 def smallest(components: ca.SX) -> ca.SX:
-    """Their minimum; the interpreter's FMIN passes NaN on."""
-    return reduce(ca.fmin, [components[i] for i in range(components.numel())])
+    """Their minimum, inf if there are none; the interpreter's FMIN passes NaN on."""
+    return reduce(ca.fmin, [components[i] for i in range(components.numel())] or [ca.SX(math.inf)])
 
 
 def largest(components: ca.SX) -> ca.SX:

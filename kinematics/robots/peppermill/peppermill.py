@@ -249,7 +249,8 @@ class Peppermill(Mechanism):
                     Particle(nut, i.nut_mass, nuts[:, limb]),
                 ]
             )
-            bodies.rotors.append(Rotor(i.carriage + own, joints[2 + limb], AXES[limb]))
+            bodies.rotors.append(Rotor(i.carriage, joints[2 + limb], AXES[limb]))
+            bodies.rotors.append(Rotor(own, joints[2 + limb], AXES[limb], proximal))
             whole, middle = rod_mass(links * g.distal_lengths[limb], i.distal_joint, i.distal_mass, i.rod_middle)
             bodies.rods.append(Rod(whole, middle, (nut, proximal), nuts[:, limb], elbows[:, limb]))
         bodies.particles.append(Particle("platform", i.platform_mass + payload, pose[:3]))

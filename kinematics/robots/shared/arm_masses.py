@@ -78,7 +78,8 @@ def arms_and_rods(
         place = centre * arms[limb]
         bodies.particles.append(Particle(arm.name, mass, limbs.actuators[:, limb] + place * swing[:, limb]))
         own = (factor - 1) * mass * place**2  # beyond the particle at the centre of mass
-        bodies.rotors.append(Rotor(i.drive + own, joints[limb], axes[:, limb]))
+        bodies.rotors.append(Rotor(i.drive, joints[limb], axes[:, limb]))
+        bodies.rotors.append(Rotor(own, joints[limb], axes[:, limb], arm.name))
         tubes, joint = several * tube_mass(single, 0, rods[limb]), several * i.rod_joint
         whole, middle = rod_mass(tubes, joint, i.rod_mass, i.rod_middle)
         bodies.rods.append(Rod(whole, middle, (platforms[limb], arm.name), ends[:, limb], elbows[:, limb]))

@@ -95,7 +95,8 @@ def test_over_a_closed_cycle_the_mean_force_is_the_weight_and_no_turning_about_i
 
 
 def test_rotors_add_the_rate_of_their_own_angular_momentum():
-    robot, bare = Heli4(OBLIQUE), type(without_rotors(Heli4))(OBLIQUE)
+    given = Heli4.Inertia(arm_mass=0.9, arm_centre=0.4, arm_factor=1.25)
+    robot, bare = Heli4(OBLIQUE, given), type(without_rotors(Heli4))(OBLIQUE, given)
     pose, first, second, third, _ = pose_and_derivatives(TIMES[::10])
     i, axes = robot.inertia, ByHand(OBLIQUE).axes
     arm = i.drive + (i.arm_factor - 1) * i.arm_mass * (i.arm_centre * OBLIQUE.arm_length) ** 2

@@ -16,7 +16,7 @@ import casadi as ca
 from kinematics.dynamics.member_loads import MemberLoad
 
 _TRIANGLE = 9 * math.sqrt(3)  # the largest moment of a beam on two supports under a triangular load w is w l^2 over it
-_LEAST = 1e-9  # of a capacity: a smaller load counts as this, so that every factor is finite
+LARGEST = 1e9  # factor; a member that bears less has this one
 
 
 class Size:
@@ -85,7 +85,7 @@ def demands(load: MemberLoad, size: Size, slack: Slack = Slack()) -> dict[str, t
 def safety_factors(load: MemberLoad, size: Size) -> dict[str, ca.SX]:
     """By what may fail first, "buckling" or "yield": the member's capacity over what it needs."""
     needs = demands(load, size)
-    return {what: capacity / ca.fmax(need, _LEAST * capacity) for what, (capacity, need) in needs.items()}
+    return {what: capacity / ca.fmax(need, capacity / LARGEST) for what, (capacity, need) in needs.items()}
 
 
 def bending_of(load: MemberLoad, size: Size) -> ca.SX:

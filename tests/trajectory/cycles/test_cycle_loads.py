@@ -1,10 +1,10 @@
-"""The reaction on the frame over a cycle: its impulses balance, and its peaks and means are those of dense samples."""
+"""Loads over a cycle: impulses on the frame balance; peaks and means are those of dense samples."""
 
 import numpy as np
 import pytest
 
-from kinematics import Delta, by_name, frame_reaction
-from trajectory import Limits, RoundedPath, frame_peaks, frame_reaction_text, there_and_back, time_optimal
+from kinematics import Delta, by_name, frame_reaction, member_forces
+from trajectory import Limits, RoundedPath, frame_peaks, frame_reaction_text, member_peaks, there_and_back, time_optimal
 
 G = 9.80665
 PERIOD = 0.001
@@ -73,3 +73,30 @@ def test_the_file_has_a_row_for_each_set_point(cycle, rows):
     assert len(rows) == sum(counts) + 1
     np.testing.assert_allclose(rows[:, 0], np.arange(len(rows)) * PERIOD, atol=1e-12)
     assert np.linalg.norm(rows[:, 1:4], axis=1).max() == pytest.approx(frame_peaks(cycle)["force"].peak, rel=0.05)
+
+
+def test_each_members_peaks_are_those_of_dense_samples(cycle):
+    found, starts = member_peaks(cycle), np.cumsum([0.0, *(piece.duration for piece in cycle.pieces)])
+    samples = []
+    for piece in cycle.pieces:
+        motion = piece.motion.at((np.arange(30_000) + 0.5) / 30_000 * piece.duration)
+        samples.append(member_forces(cycle.robot, piece.payload, *motion[:3]))
+    names = samples[0].names
+    assert [peak.member for peak in found] == list(names)
+    assert {"arm 1", "rod 1 a", "rod 3 b"} <= set(names)
+    for k, peak in enumerate(found):
+        for field in ("bending", "torsion", "joint_force"):
+            largest = max(getattr(part, field)[:, k].max() for part in samples)
+            assert getattr(peak, field) == pytest.approx(largest, rel=1e-3, abs=1e-9)
+        tension = np.concatenate([part.tension[:, k] for part in samples])
+        assert abs(peak.tension) == pytest.approx(np.abs(tension).max(), rel=1e-3)
+        least = min(part.safety[:, k].min() for part in samples)
+        assert peak.safety == pytest.approx(least, rel=1e-3)
+        assert peak.safety <= least * (1 + 1e-6)
+        assert 0.0 <= min(peak.tension_at, peak.safety_at) <= max(peak.tension_at, peak.safety_at) <= starts[-1]
+
+
+def test_a_heavier_way_loads_every_rod_more(cycle):
+    """The same motion, there with 2 kg and back with 0.5 kg: the peaks are on the way there."""
+    there = sum(piece.duration for piece in cycle.there)
+    assert all(peak.tension_at <= there for peak in member_peaks(cycle) if peak.member.startswith("rod"))
