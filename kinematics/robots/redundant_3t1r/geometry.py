@@ -29,7 +29,7 @@ class Redundant3T1RGeometry(GeometryRecord):
     outer_rail_z: float = length(0.3, minimum=None, doc="z1, of rails 1 and 2; rails 5 and 6 are at -z1")
     platform_length: float = length(0.1126, doc="d, between B1 and B3 seen from above")
     platform_height: float = length(0.2, doc="a, from B5 up to B1")
-    parallelogram_width: float = length(0.1, doc="between the two rods of arms 3 and 4; not in the paper")
+    parallelogram_width: float = length(0.06, doc="between the two rods of arms 3 and 4; not in the paper")
     rod_radius: float = length(0.010, doc="of the rods' tubes, outside; not in the paper")
     rod_wall: float = length(0.002, doc="of the rods' tubes; not in the paper")
     rail_radius: float = length(0.010, doc="of the rails; not in the paper")
