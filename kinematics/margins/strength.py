@@ -154,7 +154,7 @@ class _Turned(WorstDirection):
         most = ca.mmax(ca.sum2(ca.fabs(turned.T @ turned)))
         least = ca.mmin(row_sums(turn.T @ turn))
         self.rows.append(least - _REGULAR)
-        return self.acceleration * ca.sqrt(most / least) + ca.norm_2(vectors[:, -1])
+        return self.acceleration * ca.sqrt(ca.fmax(most / least, 0)) + ca.norm_2(vectors[:, -1])
 
 
 def _high(matrix: ca.SX, rows: int) -> ca.SX:
