@@ -119,7 +119,8 @@ class _Enclosed(NamedTuple):
         n, k = scaling.shape[0], system.forces
         error = scaling @ system.matrix - ca.SX.eye(n)
         found, moduli = first - error @ first, ca.fabs(error)
-        units = ca.vertcat(ca.SX.ones(k), ca.sqrt(ca.sum2(scaling * scaling))[k:])  # else displacements dwarf forces
+        lengths = ca.sqrt(ca.sum2(scaling * scaling))
+        units = ca.SX.ones(n) if n == k else ca.sqrt(lengths)  # any will do; so displacements do not dwarf the forces
         away = (moduli @ units) / units
         sizes = ca.vertcat(*(size.modulus(first[i, :]) for i in range(n)))
         largest, left = ca.mmax(sizes / units), 1 - ca.mmax(away)
