@@ -1,6 +1,7 @@
 """Motion and torque of the joints and of the actuators; stiffness and mass at the tool."""
 
 from kinematics.dynamics.actuators import from_actuators, to_actuators
+from kinematics.dynamics.buckling_and_yield import LARGEST, Size, Slack, WorstDirection, demands, safety_factors
 from kinematics.dynamics.chain_rule import JointMotion, actuator_motion, derivatives_along, joint_motion
 from kinematics.dynamics.drive_torque import (
     GRAVITY,
@@ -10,10 +11,9 @@ from kinematics.dynamics.drive_torque import (
     require_payload,
     torques,
 )
-from kinematics.dynamics.frame_reaction import FrameReaction, frame_reaction
-from kinematics.dynamics.member_forces import MemberForces, member_forces
+from kinematics.dynamics.forces_of_members import MemberForces, member_forces
 from kinematics.dynamics.member_loads import LoadCase, MemberLoad, case_at_rest, case_in_motion
-from kinematics.dynamics.member_safety import LARGEST, Size, Slack, WorstDirection, demands, safety_factors
+from kinematics.dynamics.reaction_on_frame import FrameReaction, frame_reaction
 from kinematics.dynamics.stiffness import (
     Transmission,
     mass_matrix,

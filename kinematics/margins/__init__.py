@@ -29,11 +29,11 @@ STANDARD = (
     J_Q,
     DET_J_Q,
     DET_J_X,
-    STRENGTH,
     STIFFNESS,
     NATURAL_FREQUENCY,
     MASS,
     POSITION_ACCURACY,
+    STRENGTH,
 )
 
 __all__ = [

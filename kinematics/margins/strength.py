@@ -120,7 +120,8 @@ class _Enclosed(NamedTuple):
         n, k = scaling.shape[0], system.forces
         error = scaling @ system.matrix - ca.SX.eye(n)
         found, moduli = first - error @ first, ca.fabs(error)
-        units = ca.vertcat(ca.SX.ones(k), ca.sqrt(ca.sum2(scaling * scaling))[k:])  # else displacements dwarf forces
+        lengths = ca.sqrt(ca.sum2(scaling * scaling))
+        units = ca.SX.ones(n) if n == k else ca.sqrt(lengths)  # any will do; so displacements do not dwarf the forces
         away = (moduli @ units) / units
         sizes = ca.vertcat(*(size.modulus(first[i, :]) for i in range(n)))
         largest, left = ca.mmax(sizes / units), 1 - ca.mmax(away)
@@ -155,7 +156,7 @@ class _Turned(WorstDirection):
         most = ca.mmax(ca.sum2(ca.fabs(turned.T @ turned)))
         least = ca.mmin(row_sums(turn.T @ turn))
         self.rows.append(least - _REGULAR)
-        return self.acceleration * ca.sqrt(most / least) + ca.norm_2(vectors[:, -1])
+        return self.acceleration * ca.sqrt(ca.fmax(most / least, 0)) + ca.norm_2(vectors[:, -1])
 
 
 def _high(matrix: ca.SX, rows: int) -> ca.SX:

@@ -1,9 +1,9 @@
 """Cycles: pieces from rest to rest, timed, repaired and verified."""
 
 from trajectory.cycles.cycle import Cycle, Piece, periods_of, there_and_back
-from trajectory.cycles.frame_peaks import FRAME_UNITS, FramePeak, frame_peaks, frame_reaction_text
 from trajectory.cycles.least_stretch import Repaired, repair
-from trajectory.cycles.member_peaks import MemberPeak, member_peaks
+from trajectory.cycles.peaks_of_members import MemberPeak, member_peaks
+from trajectory.cycles.peaks_on_frame import FRAME_UNITS, FramePeak, frame_peaks, frame_reaction_text
 
 __all__ = [
     "FRAME_UNITS",

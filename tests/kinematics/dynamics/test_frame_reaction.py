@@ -1,13 +1,10 @@
 """The reaction on the frame, against the momentum of MuJoCo's model, and against statics and closed forms."""
 
-from dataclasses import replace
-
 import mujoco
 import numpy as np
 import pytest
 
 from kinematics import MECHANISMS, Heli4, InvalidValue, Peppermill, frame_reaction, joint_motion
-from kinematics.machine import UNIFORM
 from tests.kinematics.by_hand import OBLIQUE, ByHand
 from tests.kinematics.dynamics.test_motion import TIMES, pose_and_derivatives
 from tests.kinematics.multibody.mujoco_model import OpenTree
@@ -35,11 +32,7 @@ def without_rotors(kind):
         found.rotors.clear()
         return found
 
-    robot = type(kind.__name__, (kind,), {"bodies": bodies})
-    given = robot.Inertia()
-    if given.rod_middle == 0.0 and not hasattr(given, "rod_length"):
-        given = replace(given, rod_middle=UNIFORM)
-    return robot(inertia=given)
+    return type(kind.__name__, (kind,), {"bodies": bodies})()
 
 
 def momenta(robot, tree, t):

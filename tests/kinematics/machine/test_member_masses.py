@@ -106,7 +106,7 @@ def test_the_defaults_reproduce_the_reference_masses_within_two_percent():
     reach = np.linalg.norm(np.array(at(np.zeros(4), robot.geometry.vector())).ravel() - drive)
     length = robot.geometry.arm_length
     assert reach == pytest.approx(0.40 * length, rel=0.02)
-    (own,) = numbers(robot, [bodies.rotors[0].inertia - robot.inertia.drive])
+    (own,) = numbers(robot, [bodies.rotors[1].inertia])
     about_joint = own + found[0] * reach**2
     assert about_joint == pytest.approx(1.25 * 0.9 * (0.40 * length) ** 2, rel=0.02)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from kinematics import member_forces
 from trajectory.cycles.cycle import Cycle
-from trajectory.cycles.frame_peaks import dense_samples
+from trajectory.cycles.peaks_on_frame import dense_samples
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array, checked
+from kinematics.dynamics.buckling_and_yield import Size, bending_of, safety_factors
 from kinematics.dynamics.drive_torque import require_payload
 from kinematics.dynamics.member_loads import case_in_motion
-from kinematics.dynamics.member_safety import Size, bending_of, safety_factors
 from kinematics.dynamics.stiffness import transmission
 from kinematics.evaluation import evaluate
 from kinematics.model import Build, Mechanism, Model
