@@ -70,6 +70,7 @@ class _Accuracy(Margin):
     """The largest error of some coordinates of the twist."""
 
     sense = -1
+    of_inertia = True
     angles: ClassVar[bool]
 
     def mirrored(self, robot: Mechanism) -> bool:

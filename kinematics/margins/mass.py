@@ -13,6 +13,7 @@ class Mass(Margin):
     name = "mass"
     sense = -1
     unit = "kg"
+    of_inertia = True
     words = "mass of all moving bodies, without a payload"
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002

@@ -89,6 +89,7 @@ class Margin(ABC):
         words: a description for people.
         holds_on_paths: whether it must be above 0 at every pose of a path.
         of_jacobians: whether it depends only on J_x and |J_q|, for any robot.
+        of_inertia: whether it depends on masses or drives.
         beyond_reach: whether it has a value even where a limb cannot reach.
         singularity: the kind of singularity where it is 0; empty if it shows none.
     """
@@ -99,6 +100,7 @@ class Margin(ABC):
     words: ClassVar[str]
     holds_on_paths: ClassVar[bool] = False
     of_jacobians: ClassVar[bool] = False
+    of_inertia: ClassVar[bool] = False
     beyond_reach: ClassVar[bool] = False
     singularity: ClassVar[str] = ""
 

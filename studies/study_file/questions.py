@@ -1,6 +1,7 @@
 """The two questions of a study, each with a digest: which geometry is best, and how fast its cycle can be.
 
-A payload belongs only to the cycle: no margin of a geometry depends on masses. Keys that decide neither answer, such as
+A payload belongs only to the cycle. Masses and drives belong to the cycle too, and to the geometry if a required margin
+depends on them, such as an accuracy. Keys that decide neither answer, such as
 the title, the budget or the formats of the drive files, belong to no question. The claims to be proved are compared
 separately.
 """
@@ -30,7 +31,9 @@ Question = dict[
 
 def design_question(study: Study) -> Question:
     """All keys that decide the geometry and its figures, to 12 digits. Defaults are left out."""
-    return _flat(study.model_dump(include=set(DESIGN), exclude_defaults=True, exclude_none=True))
+    margins = study.mechanism_class.margins
+    asked = {*DESIGN, "inertia"} if any(margins[r.margin].of_inertia for r in study.requirement) else {*DESIGN}
+    return _flat(study.model_dump(include=asked, exclude_defaults=True, exclude_none=True))
 
 
 def cycle_question(study: Study) -> Question:
