@@ -21,7 +21,7 @@ import numpy as np
 
 from design.certificates.box_tree import halves, outside, root
 from design.regions import Region
-from kinematics import Array, BoxProgram, InvalidValue, Mechanism, Program, enclose, whole
+from kinematics import Array, BoxProgram, InvalidValue, Mechanism, Program, enclose, positive, whole
 
 _UP = 1.0 + 1e-9  # far more than the rounding of some hundred sums and products
 _SMALL = _UP - 1.0
@@ -58,14 +58,16 @@ def nonlinear_error(
 
     Raises:
         InvalidRegion: the region does not have the robot's coordinates.
-        InvalidValue: the pose has Euler angles, the joints have play, or `most_boxes` is below 1.
+        InvalidValue: the pose has Euler angles, the joints have play, `share` is not above 0, or `most_boxes` is
+            below 1.
     """
     region.check(robot.pose_names)
     if not robot.pose_rate_map(robot.model().pose).is_eye():
         raise InvalidValue(f"{type(robot).__name__} pose", "Euler angles", "a robot with at most one rotation")
     if robot.structure.joint_play:
         raise InvalidValue("joint_play", robot.structure.joint_play, "0: the bound is for the actuators' errors alone")
-    bounds, most = _Bounds(robot, region.extent(robot.pose_names)), whole("most_boxes", most_boxes, 1)
+    share, most = positive("share", share), whole("most_boxes", most_boxes, 1)
+    bounds = _Bounds(robot, region.extent(robot.pose_names))
     stack, worst, count = [root(region, robot.pose_names)], np.zeros(2), 0
     while stack:
         low, high = stack.pop()

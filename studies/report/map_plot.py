@@ -86,7 +86,10 @@ def _levels(chart: Map, bound: float | None) -> Array:
         return np.array([0.0, 1.0])
     low, high = float(values.min()), float(values.max())
     if bound is not None and low < bound < high:
-        low = max(low, 2 * bound - high)
+        if chart.sense > 0:
+            low = max(low, 2 * bound - high)
+        else:
+            high = min(high, 2 * bound - low)
     return np.asarray(MaxNLocator(_LEVELS).tick_values(low, max(high, low + 1e-9 * max(1.0, abs(low)))))
 
 

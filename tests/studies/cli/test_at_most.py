@@ -91,6 +91,14 @@ def test_its_optimum_is_verified_again_and_a_false_bound_is_found(ended: Run) ->
         optimum.write_text(text)
 
 
+def test_an_optimum_for_other_drives_answers_another_question(ended: Run, tmp_path: Path) -> None:
+    asked = written(tmp_path, STUDY.replace("backlash_deg = 0.002", "backlash_deg = 0.001"))
+    (tmp_path / "optimum.toml").write_text((ended[0] / "optimum.toml").read_text())
+    result = linkwright("certify", asked)
+    assert result.returncode == 2
+    assert "inertia.drive_train.backlash was" in " ".join(result.stderr.split())
+
+
 def test_no_printed_number_has_the_sign_of_a_search(ended: Run) -> None:
     page = (ended[0] / "out" / "report.html").read_text()
     told = (
