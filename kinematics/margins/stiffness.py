@@ -18,6 +18,7 @@ from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
 
 _SURE = 1e-9  # by what a row sum, about 1 in the middle of a box, must be above 0
 _ITERATIONS = 8  # of the power method
+_TINY = 1e-200  # in place of 0, where a row has no entry
 
 
 class Pencil(NamedTuple):
@@ -84,23 +85,23 @@ class WeakestDirection(Margin):
         return ToShow(v.T @ matrix @ v, v, matrix, _weakest)
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
-        """`Pencil.balance` is regular everywhere, and the margin is above the bound at one pose of the region.
+        """`Pencil.balance` has k eigenvalues below 0, as many as C has rows, and f above.
 
-        The Schur complement of -C in it is K - x diag(0, E). So that is regular too, and none of its eigenvalues, all
-        above 0 at one pose, can change its sign in a connected region. A matrix Q is regular where D^-1 P Q D is, with
-        any P and any diagonal D; and that is, by Gershgorin, where the sum of each row, the moduli beside the diagonal
-        negative, is above 0. P is the inverse of Q in the middle of a box; D makes the rows alike.
+        By Sylvester K - x diag(0, E), the Schur complement of its part -C, is then positive definite, and so is its own
+        Schur complement, what the free freedoms leave of K less x E: all eigenvalues are above x. T^T Q T has as many
+        eigenvalues above 0 as Q. By Gershgorin k of them are below 0 and f above, if in k rows minus the diagonal, and
+        in f the diagonal, exceeds the sum of the moduli beside it. T makes it nearly diag(-1, 1) in the middle of a
+        box.
         """
         pencil = self.pencil(robot) if positive else None
         if pencil is None:
             return super().to_show(robot, claim, inside, positive)
-        matrix = pencil.balance(self.eigenvalue(claim.bound))
+        matrix, k = pencil.balance(self.eigenvalue(claim.bound)), pencil.compliance.shape[0]
         n = matrix.shape[0]
-        scaling = ca.SX.sym("scaling", n, n + 1)
-        left, right = scaling[:, :n], ca.diag(scaling[:, n])
-        there = float(robot.margin(self.name, inside))
-        rows = row_sums(left @ (matrix @ right)) - _SURE
-        return ToShow(ca.vertcat(rows, there * (1 - _SURE) - claim.bound), scaling, matrix, _preconditioner)
+        scaling = ca.SX.sym("scaling", n, n)
+        signs = ca.diag(ca.DM([-1] * k + [1] * (n - k)))
+        rows = row_sums(signs @ _congruent(matrix, scaling)) - _SURE
+        return ToShow(rows, scaling, matrix, _balanced)
 
 
 class _Directional(WeakestDirection):
@@ -164,21 +165,36 @@ class InternalStiffness(_Directional):
         return [], _internal(robot, freedoms)
 
 
-def _preconditioner(matrices: Array) -> Array:
-    """(k, n, n) Q -> (k, n, n + 1) D^-1 Q^-1, and in a last column D: Perron's vector of |Q^-1| |Q|, to a few digits.
+def _congruent(matrix: ca.SX, scaling: ca.SX) -> ca.SX:
+    """T^T Q T of a symmetric Q; entries beyond the diagonal are computed once."""
+    half, n = matrix @ scaling, matrix.shape[0]
+    result = ca.SX(n, n)
+    for i in range(n):
+        for j in range(i + 1):
+            result[i, j] = ca.dot(scaling[:, i], half[:, j])
+    return ca.tril2symm(result)
 
-    With it the rows of D^-1 Q^-1 dQ D are alike for a change dQ of the same share of each entry.
+
+def _balanced(matrices: Array) -> Array:
+    """(k, n, n) symmetric Q -> (k, n, n) T with T^T Q T = diag(-1, .. 1, ..), those below 0 first.
+
+    T comes from the eigenvectors of S Q S with S^2 = d / (|Q| d), d Perron's vector of |Q^-1| |Q|. Of all diagonal S
+    this one makes the norm of |(S Q S)^-1| times that of |S Q S| the smallest, so that changes of Q's entries matter
+    least.
     """
     usable = np.isfinite(matrices).all(axis=(1, 2))
-    eye = np.eye(matrices.shape[1])
-    matrices = np.where(usable[:, None, None], matrices, eye)
-    size = np.sqrt(np.abs(matrices).max(axis=2))  # symmetric, so that rows and columns alike are divided by it
-    inverse = near_inverse(matrices / size[:, :, None] / size[:, None, :]) / size[:, :, None] / size[:, None, :]
-    spread, weight = np.abs(inverse) @ np.abs(matrices), 1 / size
+    matrices = np.where(usable[:, None, None], matrices, np.eye(matrices.shape[1]))
+    size = 1 / np.sqrt(np.maximum(np.abs(matrices).max(axis=2), _TINY))
+    scaled = size[:, :, None] * matrices * size[:, None, :]
+    inverse, weight = np.abs(near_inverse(scaled)), np.ones(size.shape)
     for _ in range(_ITERATIONS):
-        weight = (spread @ weight[:, :, None])[:, :, 0]
+        image = (np.abs(scaled) @ weight[:, :, None])[:, :, 0]
+        size_more = np.sqrt(weight / image)
+        weight = (inverse @ image[:, :, None])[:, :, 0]
         weight /= weight.max(axis=1, keepdims=True)
-    return np.concatenate([inverse / weight[:, :, None], weight[:, :, None]], axis=2)
+    values, vectors = np.linalg.eigh(size_more[:, :, None] * scaled * size_more[:, None, :])
+    result: Array = (size * size_more)[:, :, None] * vectors / np.sqrt(np.maximum(np.abs(values), 1e-14))[:, None, :]
+    return result
 
 
 def _weakest(matrices: Array) -> Array:
