@@ -6,6 +6,7 @@ Each of these margins holds some freedoms of the platform and leaves the others 
 from __future__ import annotations
 
 from abc import abstractmethod
+from functools import partial
 from typing import NamedTuple
 
 import casadi as ca
@@ -13,12 +14,11 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.dynamics import stiffness_symbolic, transmission_at_pose
-from kinematics.mathematics import near_inverse, row_sums, smallest_eigenvalue
+from kinematics.mathematics import root_inverse, row_sums, smallest_eigenvalue
 from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
 
 _SURE = 1e-9  # by what a row sum, about 1 in the middle of a box, must be above 0
 _ITERATIONS = 8  # of the power method
-_TINY = 1e-200  # in place of 0, where a row has no entry
 
 
 class Pencil(NamedTuple):
@@ -85,23 +85,25 @@ class WeakestDirection(Margin):
         return ToShow(v.T @ matrix @ v, v, matrix, _weakest)
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
-        """`Pencil.balance` has k eigenvalues below 0, as many as C has rows, and f above.
+        """The matrix Q of `Pencil.balance` has as many eigenvalues below 0 as C has rows, k, and all others above.
 
-        By Sylvester K - x diag(0, E), the Schur complement of its part -C, is then positive definite, and so is its own
-        Schur complement, what the free freedoms leave of K less x E: all eigenvalues are above x. T^T Q T has as many
-        eigenvalues above 0 as Q. By Gershgorin k of them are below 0 and f above, if in k rows minus the diagonal, and
-        in f the diagonal, exceeds the sum of the moduli beside it. T makes it nearly diag(-1, 1) in the middle of a
-        box.
+        By Sylvester K - x diag(0, E), the Schur complement of its part -C, is then positive definite, and so is what
+        the free freedoms leave of it: all eigenvalues are above x. Any regular T = [[A, G], [0, B]] makes a matrix
+        P = T diag(-1, 1) T^T with k eigenvalues below 0; so has its inverse. If in D^-1 P Q D, for any diagonal D, each
+        diagonal entry exceeds the sum of the moduli beside it, so it does in all means of this matrix and the identity,
+        D^-1 P P^-1 D. Then none of the means of Q and P^-1 is singular, and Q has as many eigenvalues below 0 as P^-1.
+        In the middle of a box P is the inverse of Q; D makes the rows alike.
         """
         pencil = self.pencil(robot) if positive else None
         if pencil is None:
             return super().to_show(robot, claim, inside, positive)
         matrix, k = pencil.balance(self.eigenvalue(claim.bound)), pencil.compliance.shape[0]
         n = matrix.shape[0]
-        scaling = ca.SX.sym("scaling", n, n)
-        signs = ca.diag(ca.DM([-1] * k + [1] * (n - k)))
-        rows = row_sums(signs @ _congruent(matrix, scaling)) - _SURE
-        return ToShow(rows, scaling, matrix, _balanced)
+        scaling = ca.SX.sym("scaling", n, n + 1)
+        a, g, b, weight = scaling[:k, :k], scaling[:k, k:n], scaling[k:, k:n], scaling[:, n]
+        inverse = ca.vertcat(ca.horzcat(g @ g.T - a @ a.T, g @ b.T), ca.horzcat(b @ g.T, b @ b.T))
+        rows = row_sums(ca.diag(1 / weight) @ (inverse @ (matrix @ ca.diag(weight)))) - _SURE
+        return ToShow(rows, scaling, matrix, partial(_preconditioner, k))
 
 
 class _Directional(WeakestDirection):
@@ -165,35 +167,26 @@ class InternalStiffness(_Directional):
         return [], _internal(robot, freedoms)
 
 
-def _congruent(matrix: ca.SX, scaling: ca.SX) -> ca.SX:
-    """T^T Q T of a symmetric Q; entries beyond the diagonal are computed once."""
-    half, n = matrix @ scaling, matrix.shape[0]
-    result = ca.SX(n, n)
-    for i in range(n):
-        for j in range(i + 1):
-            result[i, j] = ca.dot(scaling[:, i], half[:, j])
-    return ca.tril2symm(result)
+def _preconditioner(k: int, matrices: Array) -> Array:
+    """(p, n, n) Q -> (p, n, n + 1) T of `to_show` and, in a last column, D: Perron's vector of |Q^-1| |Q|.
 
-
-def _balanced(matrices: Array) -> Array:
-    """(k, n, n) symmetric Q -> (k, n, n) T with T^T Q T = diag(-1, .. 1, ..), those below 0 first.
-
-    T comes from the eigenvectors of S Q S with S^2 = d / (|Q| d), d Perron's vector of |Q^-1| |Q|. Of all diagonal S
-    this one makes the norm of |(S Q S)^-1| times that of |S Q S| the smallest, so that changes of Q's entries matter
-    least.
+    With this D the rows of D^-1 Q^-1 dQ D are alike for a change dQ of the same share of each entry of Q.
     """
     usable = np.isfinite(matrices).all(axis=(1, 2))
-    matrices = np.where(usable[:, None, None], matrices, np.eye(matrices.shape[1]))
-    size = 1 / np.sqrt(np.maximum(np.abs(matrices).max(axis=2), _TINY))
-    scaled = size[:, :, None] * matrices * size[:, None, :]
-    inverse, weight = np.abs(near_inverse(scaled)), np.ones(size.shape)
+    usual = np.diag(np.where(np.arange(matrices.shape[1]) < k, -1.0, 1.0))
+    matrices = np.where(usable[:, None, None], matrices, usual)
+    wrenches, a = matrices[:, k:, :k], root_inverse(-matrices[:, :k, :k])
+    forces = a @ (np.swapaxes(a, 1, 2) @ np.swapaxes(wrenches, 1, 2))  # C^-1 W^T
+    b = root_inverse(wrenches @ forces + matrices[:, k:, k:])
+    result = np.zeros((len(matrices), matrices.shape[1], matrices.shape[1] + 1))
+    result[:, :k, :k], result[:, :k, k:-1], result[:, k:, k:-1] = a, forces @ b, b
+    factor = result[:, :, :-1]
+    inverse = np.abs(factor @ usual @ np.swapaxes(factor, 1, 2))
+    weight = np.sqrt(np.einsum("pii->pi", inverse))
     for _ in range(_ITERATIONS):
-        image = (np.abs(scaled) @ weight[:, :, None])[:, :, 0]
-        size_more = np.sqrt(weight / image)
-        weight = (inverse @ image[:, :, None])[:, :, 0]
+        weight = (inverse @ (np.abs(matrices) @ weight[:, :, None]))[:, :, 0]
         weight /= weight.max(axis=1, keepdims=True)
-    values, vectors = np.linalg.eigh(size_more[:, :, None] * scaled * size_more[:, None, :])
-    result: Array = (size * size_more)[:, :, None] * vectors / np.sqrt(np.maximum(np.abs(values), 1e-14))[:, None, :]
+    result[:, :, -1] = weight
     return result
 
 
