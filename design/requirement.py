@@ -4,13 +4,30 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from kinematics import Bound, InvalidValue
+
 
 @dataclass(frozen=True)
 class Requirement:
-    """A named margin of the mechanism must be at least a bound."""
+    """A named margin of the mechanism must be at least a bound, or at most one where a smaller number is better.
+
+    Raises:
+        InvalidValue: not exactly one bound is given.
+    """
 
     margin: str
-    at_least: float
+    at_least: float | None = None
+    at_most: float | None = None
+
+    def __post_init__(self) -> None:
+        if (self.at_least is None) == (self.at_most is None):
+            found = "no bound" if self.at_least is None else "two bounds"
+            raise InvalidValue(f"requirement of {self.margin}", found, "at_least or at_most")
+
+    @property
+    def bound(self) -> Bound:
+        """The value that the margin must reach."""
+        return Bound(self.at_least) if self.at_least is not None else Bound(self.at_most or 0.0, -1)
 
 
 @dataclass(frozen=True)

@@ -6,14 +6,18 @@ from kinematics.arguments import finite, positive, whole
 from kinematics.arrays import Array, Value, checked
 from kinematics.coordinates import LENGTHS, is_length
 from kinematics.dynamics import (
+    FrameReaction,
     JointMotion,
+    MemberForces,
     actuator_motion,
     derivatives_along,
+    frame_reaction,
     friction,
     from_actuators,
     inverse_dynamics,
     joint_motion,
     mass_matrix,
+    member_forces,
     platform_stiffness,
     to_actuators,
     tool_stiffness,
@@ -50,13 +54,27 @@ from kinematics.machine import (
     JointRanges,
     Load,
     Material,
+    Obstacle,
+    PayloadHull,
     Structure,
+    Surroundings,
     kind_of,
 )
-from kinematics.margins import CLEARANCE, INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
+from kinematics.margins import (
+    ANGLE_ACCURACY,
+    CLEARANCE,
+    INTERNAL_STIFFNESS,
+    PASSIVE_JOINT,
+    ROTATIONAL_STIFFNESS,
+    STANDARD,
+    hull_depth,
+    largest_errors,
+    lowest_of_base,
+)
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
 from kinematics.model import (
+    Bound,
     ClaimSymbols,
     FviBounds,
     Margin,
@@ -68,7 +86,7 @@ from kinematics.model import (
     continued,
     sides,
 )
-from kinematics.multibody import mjcf
+from kinematics.multibody import mjcf, swept_box
 from kinematics.printed_bounds import rounded_down, rounded_up
 from kinematics.robots import MECHANISMS, Delta, Hexa
 from kinematics.robots.gough_stewart import GoughStewart, LostPaths, SelfMotion, SingularArchitecture
@@ -79,6 +97,7 @@ from kinematics.robots.planar import Planar3PRR, Planar3RPR, Planar3RRR
 from kinematics.robots.redundant_3t1r import Redundant3T1R
 
 __all__ = [
+    "ANGLE_ACCURACY",
     "ARCHITECTURES",
     "CLEARANCE",
     "CORES",
@@ -93,11 +112,13 @@ __all__ = [
     "Architecture",
     "Array",
     "BlockProgram",
+    "Bound",
     "BoxProgram",
     "ClaimSymbols",
     "Delta",
     "DriveTrain",
     "FieldKind",
+    "FrameReaction",
     "FviBounds",
     "GeometryRecord",
     "GoughStewart",
@@ -118,9 +139,12 @@ __all__ = [
     "Material",
     "Measure",
     "Mechanism",
+    "MemberForces",
     "Model",
+    "Obstacle",
     "Op",
     "Par4",
+    "PayloadHull",
     "Peppermill",
     "Planar3PRR",
     "Planar3RPR",
@@ -130,6 +154,7 @@ __all__ = [
     "SelfMotion",
     "SingularArchitecture",
     "Structure",
+    "Surroundings",
     "ToShow",
     "UnreachablePose",
     "Value",
@@ -143,14 +168,19 @@ __all__ = [
     "enclose",
     "evaluate",
     "finite",
+    "frame_reaction",
     "friction",
     "from_actuators",
+    "hull_depth",
     "inverse_dynamics",
     "is_length",
     "joint_motion",
     "kind_of",
+    "largest_errors",
     "loop_mobility",
+    "lowest_of_base",
     "mass_matrix",
+    "member_forces",
     "mjcf",
     "mobility_of_identical_chains",
     "over_spans",
@@ -161,6 +191,7 @@ __all__ = [
     "rounded_up",
     "run_through",
     "sides",
+    "swept_box",
     "to_actuators",
     "tool_stiffness",
     "torques",

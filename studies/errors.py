@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from kinematics import LinkwrightError
+from kinematics import Bound, LinkwrightError
 
 KeyPath = tuple[str | int, ...]  # ("requirement", 0, "margin"): table, row, key
 
@@ -54,20 +54,24 @@ class StudyError(LinkwrightError):
 class Failed:
     """A requirement that is not met: the wanted bound, the worst value found, and its pose (empty on a path).
 
-    `place` is where the study asks for it: file, line and key; empty where no file does.
+    `place` is where the study asks for it: file, line and key; empty where no file does. `part` is the part of the
+    robot that has the worst value, such as "limb 1"; None if there is no single one.
     """
 
     margin: str
-    at_least: float
+    bound: Bound
     found: float
     pose: tuple[float, ...]
     place: str = ""
+    part: str | None = None
 
     def __str__(self) -> str:
         where = f" at pose {_pose(self.pose)}" if self.pose else ""
         found = f"{self.found:.6g}" if math.isfinite(self.found) else "no value, as a limb cannot reach,"
+        words = self.bound.word.replace("_", " ")
         at = f"{self.place}: " if self.place else ""
-        return f"{at}{self.margin}: found {found}{where}; expected at least {self.at_least:g}"
+        of_part = f" of {self.part}" if self.part else ""
+        return f"{at}{self.margin}{of_part}: found {found}{where}; expected {words} {self.bound.value:g}"
 
 
 class RequirementFailed(LinkwrightError):

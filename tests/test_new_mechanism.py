@@ -68,7 +68,9 @@ def test_the_examples_jacobians_have_the_sign_that_the_page_states(robot, poses)
 
 def test_the_base_gives_the_example_all_the_rest(robot, poses):
     for name in robot.margins:
-        assert (robot.margin(name, poses) > 0).all()
+        values = robot.margin(name, poses)
+        exact = name == "position_accuracy"  # its drives have no error
+        assert (values == 0).all() if exact else (values > 0).all()
     assert robot.margin("det_J_x", poses).max() <= 1.0
     assert np.isfinite(robot.condition_number(poses)).all()
     assert robot.polylines(poses[0])["rod 1"].shape == (2, 3)

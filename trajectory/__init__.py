@@ -8,7 +8,19 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from trajectory.cycles import Cycle, Piece, Repaired, repair, there_and_back
+from trajectory.cycles import (
+    FRAME_UNITS,
+    Cycle,
+    FramePeak,
+    MemberPeak,
+    Piece,
+    Repaired,
+    frame_peaks,
+    frame_reaction_text,
+    member_peaks,
+    repair,
+    there_and_back,
+)
 from trajectory.errors import (
     InvalidPath,
     LimitsExceeded,
@@ -77,6 +89,7 @@ def __getattr__(name: str) -> Any:
 
 
 __all__ = [
+    "FRAME_UNITS",
     "LAWS",
     "LIMITS",
     "SPEED_UNIT",
@@ -85,6 +98,7 @@ __all__ = [
     "CannotWrite",
     "Cycle",
     "EmergencyStop",
+    "FramePeak",
     "InvalidPath",
     "JointField",
     "Law",
@@ -92,6 +106,7 @@ __all__ = [
     "LimitField",
     "Limits",
     "LimitsExceeded",
+    "MemberPeak",
     "Motion",
     "Move",
     "MoveRefused",
@@ -126,11 +141,14 @@ __all__ = [
     "certify_path",
     "cycle_setpoints",
     "emergency_stop",
+    "frame_peaks",
+    "frame_reaction_text",
     "free_motion",
     "in_si",
     "jerk_limited",
     "law_named",
     "lower_bound",
+    "member_peaks",
     "motion_of",
     "pieces",
     "places",

@@ -47,8 +47,9 @@ class UnsuitedPath(InvalidValue):
 class PathRefused(LinkwrightError):
     """A path has a pose where a limb cannot reach or the robot is singular, or it could not be proved that it has none.
 
-    `at` is the arc length [m]. `limb` counts from 1; None means all limbs together. If the margin fails, `bound` is its
-    upper bound there; if it is undecided, `bound` is its best lower bound. `waypoint` is the nearest one.
+    `at` is the arc length [m]. `place` is where the margin is smallest, such as "limb 1"; None means all limbs
+    together. If the margin fails, `bound` is its upper bound there; if it is undecided, `bound` is its best lower
+    bound. `waypoint` is the nearest one.
     """
 
     def __init__(
@@ -56,17 +57,17 @@ class PathRefused(LinkwrightError):
         margin: str,
         at: float,
         pose: Sequence[float],
-        limb: int | None,
+        place: str | None,
         bound: float,
         proved: bool,
         waypoint: int | None = None,
     ) -> None:
-        self.margin, self.at, self.limb, self.bound, self.proved = margin, at, limb, bound, proved
+        self.margin, self.at, self.place, self.bound, self.proved = margin, at, place, bound, proved
         self.pose, self.waypoint = tuple(float(v) for v in pose), waypoint
         where = _place(at, self.pose, waypoint)
-        of_limb = "" if limb is None else f" of limb {limb}"
+        of_place = "" if place is None else f" of {place}"
         found = f"at most {bound:.6g}" if proved else f"undecided (only at least {bound:.6g} is proved)"
-        super().__init__(f"{where}: the {margin} margin{of_limb} is {found}; expected above 0")
+        super().__init__(f"{where}: the {margin} margin{of_place} is {found}; expected above 0")
 
 
 class PathBeyondLimit(LinkwrightError):

@@ -5,6 +5,7 @@ from design.certificates.certificate import MOST_BOXES, Certificate, answer_by_b
 from design.certificates.certificate_file import certificate_bytes, load_certificate, save_certificate
 from design.certificates.largest_region import CertifiedRegion, certified_cylinder
 from design.certificates.lower_bounds import LowerBounds
+from design.certificates.nonlinear_error import NonlinearError, nonlinear_error
 from design.certificates.refutation import Refuter
 from design.certificates.replay import replay
 
@@ -14,6 +15,7 @@ __all__ = [
     "Certificate",
     "CertifiedRegion",
     "LowerBounds",
+    "NonlinearError",
     "Refuter",
     "answer_by_boxes",
     "best_bound",
@@ -22,6 +24,7 @@ __all__ = [
     "certify",
     "checked_boxes",
     "load_certificate",
+    "nonlinear_error",
     "replay",
     "save_certificate",
 ]

@@ -1,4 +1,4 @@
-"""A certified worst case: the largest bound of a margin that is proved, to a tolerance."""
+"""A certified worst case: the strongest bound of a margin that is proved, to a tolerance."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from design.budget import Budget
 from design.certificates.certificate import MOST_BOXES, SEED, Certificate, Progress, answer, checked_boxes, suspects
 from design.claims import Statement
 from design.regions import Region
-from kinematics import FviBounds, Mechanism, positive
+from kinematics import Bound, FviBounds, Mechanism, positive
 
 _MOST_TRIES = 12  # bounds that are tried, including the refuted ones
 _COARSEST = 6  # most doublings of the tolerance
@@ -23,8 +23,8 @@ class BestBound:
     """A certified worst case.
 
     Attributes:
-        certificate: a proved certificate; its `at_least` is the bound.
-        sampled: the lowest value that a search found. The true worst value is between the two.
+        certificate: a proved certificate with the bound.
+        sampled: the worst value that a search found. The true worst value is between the two.
     """
 
     certificate: Certificate
@@ -43,11 +43,12 @@ def best_bound(
     seconds: float = math.inf,
     progress: Progress = lambda _: None,
 ) -> BestBound | None:
-    """The largest bound that is proved, to a tolerance in the margin's unit; None if no bound is proved.
+    """The strongest bound that is proved, to a tolerance in the margin's unit; None if no bound is proved.
 
-    The first try is the lowest sampled value minus the tolerance. If it is refuted, the value of the counterexample
-    replaces the lowest one. If it is undecided, the search finds the smallest k for which a distance of 2^k tolerances
-    is proved, so compare `sampled` with the bound. For a positive margin no bound of 0 or below is tried, as it says
+    It is the largest one of a margin that is better larger, the smallest one of a margin that is better smaller. The
+    first try is the worst sampled value, eased by the tolerance. If it is refuted, the value of the counterexample
+    replaces the worst one. If it is undecided, the search finds the smallest k for which a distance of 2^k tolerances
+    is proved, so compare `sampled` with the bound. For a positive lower bound none of 0 or below is tried, as it says
     nothing, unless the tolerance itself requires it.
 
     Args:
@@ -55,16 +56,17 @@ def best_bound(
         robot, region, margin, bounds, characteristic_length, progress: as in `certify`.
     """
     tolerance, budget = positive("tolerance", tolerance), Budget(seconds)
-    statement = Statement.of(robot, margin, 0.0, bounds, characteristic_length)  # the bound is still unknown
+    weakest = Bound.weakest(robot.margin_named(margin).sense)  # the bound is still unknown
+    statement = Statement.of(robot, margin, weakest, bounds, characteristic_length)
     region.check(robot.pose_names)
     share = max(1, checked_boxes(most_boxes) // _SHARES)
     sampled = float(statement.value(suspects(statement, region, 10 * SEED, budget.share(_SHARES))[0]))
     best: Certificate | None = None
-    undecided, proved, doublings = -1, _coarsest(sampled, tolerance) + 1, 0
+    undecided, proved, doublings = -1, _coarsest(weakest.sense * sampled, tolerance) + 1, 0
     for _ in range(_MOST_TRIES):
         if not np.isfinite(sampled) or undecided + 1 >= proved or budget.spent:
             break
-        attempt = replace(statement, at_least=sampled - math.ldexp(tolerance, doublings))
+        attempt = replace(statement, bound=replace(weakest, value=sampled).eased(math.ldexp(tolerance, doublings)))
         certificate = answer(attempt, region, share, budget.share(2), progress)
         if certificate.counterexample is not None:
             sampled = float(statement.value(certificate.counterexample))

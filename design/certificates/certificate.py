@@ -1,4 +1,4 @@
-"""Certificates: a margin is at least a bound at every pose of a region, not only at sampled ones.
+"""Certificates: a margin keeps a bound at every pose of a region, not only at sampled ones.
 
     certify(robot, region, "fvi", at_least=1.0).status  ->  "proved", "refuted" or "undecided"
 
@@ -28,7 +28,7 @@ from design.certificates.symmetry import Mirrors, mirrors_of
 from design.claims import Statement
 from design.regions import Region
 from design.sampling import worst_poses
-from kinematics import Array, FviBounds, Mechanism, Value, rounded_down, whole
+from kinematics import Array, Bound, FviBounds, Mechanism, Value, whole
 
 Progress = Callable[[str], None]
 MOST_BOXES = 4_000_000
@@ -43,11 +43,11 @@ class Certificate(Value):
 
     Attributes:
         mechanism, digest, conditions: class name, SHA-256 of the geometry, SHA-256 of joint ranges and working mode.
-        region, margin, at_least: the claim.
+        region, margin, bound: the claim.
         bounds, characteristic_length: what the FVI is measured with; the length is in metres.
         version, edition: the version of the program that made the certificate, and its `EDITION`.
         status: "proved", "refuted" or "undecided".
-        counterexample: (n,) a pose where the margin is below the bound by more than rounding, or out of a limb's reach.
+        counterexample: (n,) a pose where the margin breaks the bound by more than rounding, or out of a limb's reach.
         within_reach: whether every limb can reach the counterexample; True without one.
         boxes: the number of boxes that were bounded.
         codes: (nodes,) the tree of boxes by level; see `box_tree`. Empty unless proved.
@@ -61,7 +61,7 @@ class Certificate(Value):
     conditions: str
     region: Region
     margin: str
-    at_least: float
+    bound: Bound
     bounds: FviBounds
     characteristic_length: float
     version: str
@@ -76,10 +76,10 @@ class Certificate(Value):
 
     def statement(self, robot: Mechanism) -> Statement:
         """The certificate's statement about `robot`. Whether it was made for this robot is not checked here."""
-        return Statement(robot, self.margin, self.at_least, self.bounds, self.characteristic_length)
+        return Statement(robot, self.margin, self.bound, self.bounds, self.characteristic_length)
 
     def __str__(self) -> str:
-        claim = f"{self.mechanism}: {self.margin} >= {rounded_down(self.at_least, 6)} {self.status}"
+        claim = f"{self.mechanism}: {self.margin} {self.bound.shown(6)} {self.status}"
         return f"{claim} with {self.boxes} boxes" if self.within_reach else f"{claim}: out of reach"
 
 
@@ -88,20 +88,21 @@ def certify(
     region: Region,
     margin: str,
     *,
-    at_least: float,
+    at_least: float | None = None,
+    at_most: float | None = None,
     bounds: FviBounds | None = None,
     characteristic_length: float | None = None,
     most_boxes: int = MOST_BOXES,
     seconds: float = math.inf,
     progress: Progress = lambda _: None,
 ) -> Certificate:
-    """Prove or refute that a margin is at least a bound everywhere in a region.
+    """Prove or refute that a margin keeps a bound everywhere in a region.
 
     Args:
         robot: the mechanism with its geometry.
         region: all its poses count, including its boundary.
         margin: one of `robot.margins`.
-        at_least: the bound, in the margin's unit.
+        at_least, at_most: the bound, in the margin's unit; the one that the margin's `sense` asks for.
         bounds, characteristic_length: as in `Mechanism.margin`.
         most_boxes, seconds: after so many boxes, or so much time, the answer is "undecided", with the boxes left.
         progress: called with a line of text at each step.
@@ -110,7 +111,8 @@ def certify(
         InvalidRegion: the region does not have the robot's coordinates.
         InvalidValue: see `Statement`; or `most_boxes` is below 1, or more than a certificate can hold.
     """
-    statement = Statement.of(robot, margin, at_least, bounds, characteristic_length)
+    bound = robot.margin_named(margin).bound(at_least, at_most)
+    statement = Statement.of(robot, margin, bound, bounds, characteristic_length)
     region.check(robot.pose_names)
     return answer(statement, region, checked_boxes(most_boxes), Budget(seconds), progress)
 
@@ -125,8 +127,8 @@ def checked_boxes(most_boxes: object) -> int:
 
 
 def answer(statement: Statement, region: Region, most_boxes: int, budget: Budget, progress: Progress) -> Certificate:
-    """Look for a counterexample where the margin is lowest, then prove by boxes."""
-    what = f"certify {statement.margin} >= {statement.at_least:g}"
+    """Look for a counterexample where the margin is worst, then prove by boxes."""
+    what = f"certify {statement.margin} {statement.bound}"
     progress(f"{what}: looking for a counterexample")
     refuter = Refuter(statement)
     refutation = refuter.refutation(region, suspects(statement, region, SEED, budget.share(4)))
@@ -148,7 +150,7 @@ def answer_by_boxes(
 
 
 def suspects(statement: Statement, region: Region, about: int, budget: Budget) -> Array:
-    """(k, n) poses where a grid and descents find the margin lowest, the lowest first."""
+    """(k, n) poses where a grid and descents find the margin worst, the worst first."""
     measured = {"bounds": statement.bounds, "characteristic_length": statement.length}
     if region.dimension == 0:
         return region.from_unit(np.empty((1, 0)), statement.robot.pose_names)
@@ -165,7 +167,7 @@ def _certificate(statement: Statement, region: Region, mirrors: Mirrors, found: 
         conditions=statement.robot.conditions_digest(statement.robot.margin_named(statement.margin).records),
         region=region,
         margin=statement.margin,
-        at_least=statement.at_least,
+        bound=statement.bound,
         bounds=statement.bounds,
         characteristic_length=statement.length,
         version=version("linkwright"),

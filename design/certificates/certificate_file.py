@@ -22,14 +22,13 @@ from design.certificates.box_tree import MOST_NODES
 from design.certificates.certificate import Certificate
 from design.errors import UnreadableCertificate
 from design.regions import Box, Cylinder, Region
-from kinematics import Array, FviBounds, LinkwrightError
+from kinematics import Array, Bound, FviBounds, LinkwrightError
 
 _PLAIN: dict[str, type] = {
     "mechanism": str,
     "digest": str,
     "conditions": str,
     "margin": str,
-    "at_least": float,
     "characteristic_length": float,
     "version": str,
     "edition": int,
@@ -37,6 +36,7 @@ _PLAIN: dict[str, type] = {
     "within_reach": bool,
     "boxes": int,
 }
+_SENSES = {"at_least": 1, "at_most": -1}
 _LARGEST_FILE = 1 << 23  # bytes; a hundred times the largest known file
 _MOST_LEFT = 1 << 16  # boxes that were not proved; they show where the proof failed
 # Largest number of bytes of each part, including the header of its array.
@@ -70,6 +70,7 @@ def certificate_bytes(certificate: Certificate) -> bytes:
     """The file's content; the same certificate gives the same bytes. At most 65,536 of the boxes left are kept."""
     header: dict[str, Any] = {key: getattr(certificate, key) for key in _PLAIN}
     header |= {
+        certificate.bound.word: certificate.bound.value,
         "region": _region_record(certificate.region),
         "bounds": asdict(certificate.bounds),
         "mirrors": certificate.mirrors,
@@ -113,6 +114,9 @@ def _certificate(path: Path) -> Certificate:
     if not (np.isfinite(pose).all() and np.isfinite(left).all() and left.shape[1] == 2):
         raise ValueError("a counterexample or a box left with numbers that are not finite")
     plain = {key: _of_kind(key, header[key], kind) for key, kind in _PLAIN.items()}
+    words = [word for word in _SENSES if word in header]
+    if len(words) != 1:
+        raise ValueError(f"the bounds {words}")
     if plain["boxes"] < 0:
         raise ValueError(f"{plain['boxes']} boxes")
     if plain["status"] not in ("proved", "refuted", "undecided"):
@@ -121,6 +125,7 @@ def _certificate(path: Path) -> Certificate:
         raise ValueError(f"{pose.size} numbers of a counterexample for the status {plain['status']!r}")
     return Certificate(
         **plain,
+        bound=Bound(_of_kind(words[0], header[words[0]], float), _SENSES[words[0]]),
         region=_region(header["region"]),
         bounds=FviBounds(**{key: _of_kind(key, value, float) for key, value in header["bounds"].items()}),
         counterexample=pose if pose.size else None,

@@ -15,7 +15,7 @@ import numpy as np
 from design.budget import Budget
 from design.certificates.certificate import MOST_BOXES, Certificate, certify
 from design.regions import Cylinder
-from kinematics import Array, FviBounds, InvalidValue, Mechanism, Value, bisected, positive
+from kinematics import Array, Bound, FviBounds, InvalidValue, Mechanism, Value, bisected, positive
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +23,7 @@ class CertifiedRegion(Value):
     """The proved part of a family of regions.
 
     Attributes:
-        margin, at_least: the claim.
+        margin, bound: the claim.
         certificates: proofs; their regions together are the certified region. Empty if nothing is proved.
         boxes: the number of boxes that were bounded, including those of failed attempts.
         left: (k, 2, n) lower and upper bounds of boxes that were neither proved nor refuted.
@@ -32,7 +32,7 @@ class CertifiedRegion(Value):
     """
 
     margin: str
-    at_least: float
+    bound: Bound
     certificates: tuple[Certificate, ...]
     boxes: int
     left: Array
@@ -61,7 +61,8 @@ def certified_cylinder(
     region: Cylinder,
     margin: str,
     *,
-    at_least: float,
+    at_least: float | None = None,
+    at_most: float | None = None,
     tolerance: float | None = None,
     bounds: FviBounds | None = None,
     characteristic_length: float | None = None,
@@ -75,7 +76,7 @@ def certified_cylinder(
     Args:
         robot: the mechanism with its geometry.
         region: the largest cylinder of the family. The bounds of its other coordinates are the same for all cylinders.
-        margin, at_least, bounds, characteristic_length, most_boxes: as in `certify`, for each radius.
+        margin, at_least, at_most, bounds, characteristic_length, most_boxes: as in `certify`, for each radius.
         tolerance: tolerance of the radius [m]; by default a thousandth of the region's radius.
         seconds: for all radii together. One radius gets half of the time that is left.
 
@@ -85,6 +86,7 @@ def certified_cylinder(
     tolerance = positive("tolerance", region.radius / 1000.0 if tolerance is None else tolerance)
     if tolerance < (finest := float(np.spacing(region.radius))):
         raise InvalidValue("tolerance", tolerance, f"at least {finest:.3g} m, the step between radii of this size")
+    bound = robot.margin_named(margin).bound(at_least, at_most)
     started, boxes, complete, budget = time.perf_counter(), 0, True, Budget(seconds)
     best: list[Certificate] = []
     others = {name: pair for name, pair in region.intervals.items() if name not in ("x", "y")}
@@ -101,6 +103,7 @@ def certified_cylinder(
             Cylinder(float(radius), **others),
             margin,
             at_least=at_least,
+            at_most=at_most,
             bounds=bounds,
             characteristic_length=characteristic_length,
             most_boxes=most_boxes,
@@ -115,4 +118,4 @@ def certified_cylinder(
 
     if not proved(region.radius):
         bisected(proved, 0.0, region.radius, tolerance)
-    return CertifiedRegion(margin, at_least, tuple(best[-1:]), boxes, left, complete, time.perf_counter() - started)
+    return CertifiedRegion(margin, bound, tuple(best[-1:]), boxes, left, complete, time.perf_counter() - started)

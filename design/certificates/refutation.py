@@ -15,12 +15,12 @@ from design.claims import Statement
 from design.regions import Region
 from kinematics import Array, ClaimSymbols, Value, enclose
 
-_MOST = 1024  # poses that are tried together, the lowest first
+_MOST = 1024  # poses that are tried together, the worst first
 
 
 @dataclass(frozen=True, eq=False)
 class Refutation(Value):
-    """A pose (n,) of the region where the margin is below the bound, or where a limb cannot reach."""
+    """A pose (n,) of the region where the margin breaks the bound, or where a limb cannot reach."""
 
     pose: Array
     within_reach: bool
@@ -43,10 +43,11 @@ class Refuter:
         """The worst of the poses (k, n) that are in the region and are shown to refute; None if there is none."""
         poses = poses[region.contains(poses, self.statement.robot.pose_names)]
         values = self.statement.value(poses)
-        failing = np.flatnonzero(~(values >= self.statement.at_least))
+        room = self.statement.bound.room(values)
+        failing = np.flatnonzero(~(room >= 0.0))
         if not len(failing):
             return None
-        order = np.argsort(np.nan_to_num(values[failing], nan=-np.inf), kind="stable")
+        order = np.argsort(np.nan_to_num(room[failing], nan=-np.inf), kind="stable")
         poses = poses[failing[order[:_MOST]]]
         at = np.hstack([poses, self._scaled.scaling(poses)])
         _, highest = enclose(self._rows, at, at)

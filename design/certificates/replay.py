@@ -14,7 +14,7 @@ from design.certificates.refutation import Refuter
 from design.certificates.symmetry import mirrors_of, one_side
 from design.errors import BrokenCertificate, OtherCertificate
 from design.regions import Region
-from kinematics import Array, FviBounds, Mechanism
+from kinematics import Array, Bound, FviBounds, Mechanism
 
 _CUTS = 2  # a box that was just proved may need a cut if another library rounds its scaling differently
 
@@ -26,21 +26,22 @@ def replay(
     region: Region | None = None,
     margin: str | None = None,
     at_least: float | None = None,
+    at_most: float | None = None,
     bounds: FviBounds | None = None,
     characteristic_length: float | None = None,
 ) -> int:
     """Check the answer of a certificate for this robot.
 
     Args:
-        region, margin, at_least, bounds, characteristic_length: the question that it must answer, as far as given. A
-            certificate of a higher bound is accepted.
+        region, margin, at_least, at_most, bounds, characteristic_length: the question that it must answer, as far as
+            given. A certificate of a stronger bound is accepted.
 
     Returns:
         The number of boxes that were bounded again; 1 for the pose of a refutation.
 
     Raises:
         OtherCertificate: it is for another mechanism, geometry, joint range, working mode, version, edition, region,
-            margin, FVI bounds or length, or for a lower bound; or masses, materials or loads that count are others.
+            margin, FVI bounds or length, or for a weaker bound; or masses, materials or loads that count are others.
         BrokenCertificate: its boxes do not cover the region, their number is wrong, or one is not proved; its pose does
             not refute the claim; or it is undecided.
     """
@@ -61,8 +62,13 @@ def replay(
         _same("FVI bounds", certificate.bounds, bounds)
     if characteristic_length is not None:
         _same("characteristic length", certificate.characteristic_length, characteristic_length)
-    if at_least is not None and not certificate.at_least >= at_least:
-        raise OtherCertificate("bound", certificate.at_least, f"at least {at_least}")
+    asked = robot.margin_named(certificate.margin)
+    _same("kind of bound", certificate.bound.sign, Bound.weakest(asked.sense).sign)
+    if at_least is not None or at_most is not None:
+        wanted = asked.bound(at_least, at_most)
+        if not wanted.room(certificate.bound.value) >= 0.0:
+            words = f"{wanted.word.replace('_', ' ')} {wanted.value}"
+            raise OtherCertificate("bound", certificate.bound.value, words)
     if certificate.status == "proved":
         return _replay_proof(certificate, robot)
     if certificate.status == "refuted" and certificate.counterexample is not None:

@@ -26,7 +26,7 @@ Mirrors = tuple[tuple[str, ...], ...]
 
 def mirrors_of(robot: Mechanism, region: Region, margin: str) -> Mirrors:
     """The mirrors that keep the region and are shown to keep the margin. The first coordinate of each is halved."""
-    if not robot.margins[margin].of_jacobians:
+    if not robot.margins[margin].mirrored(robot):
         return ()
     kept = [names for names in robot.mirrors if _keeps(region, names) and _holds(type(robot), robot.model(), names)]
     halved = [names[0] for names in kept]

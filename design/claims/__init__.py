@@ -1,4 +1,4 @@
-"""The claims behind "a margin is at least a bound": expressions that must be at least 0."""
+"""The claims behind "a margin keeps a bound": expressions that must be at least 0."""
 
 from design.claims.reaching import reach_rows
 from design.claims.statement import Statement

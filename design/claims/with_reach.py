@@ -19,6 +19,6 @@ def to_show(statement: Statement, claim: ClaimSymbols, inside: Array) -> ToShow:
         inside: (n,) a pose of the region; it decides the signs.
     """
     margin = statement.robot.margins[statement.margin]
-    shown = margin.to_show(statement.robot, claim, inside, statement.at_least > 0.0)
+    shown = margin.to_show(statement.robot, claim, inside, statement.bound.value > 0.0)
     reach = reach_rows(statement.robot, shown.expressions)
     return replace(shown, expressions=ca.vertcat(shown.expressions, reach))

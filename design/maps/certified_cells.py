@@ -31,7 +31,8 @@ def certified_cells(
     axes: tuple[str, str],
     margin: str,
     *,
-    at_least: float,
+    at_least: float | None = None,
+    at_most: float | None = None,
     depth: int = DEPTH,
     bounds: FviBounds | None = None,
     characteristic_length: float | None = None,
@@ -40,14 +41,14 @@ def certified_cells(
 ) -> CertifiedRegion:
     """The cells of a plane over which the margin is proved for all values of the other coordinates.
 
-    The plane is first cut in four. A cell is tried if a map finds no value below the bound at its corners and at the
-    nodes inside it. A cell that is not proved is cut in four again, down to the smallest cells.
+    The plane is first cut in four. A cell is tried if a map finds no value that breaks the bound at its corners and at
+    the nodes inside it. A cell that is not proved is cut in four again, down to the smallest cells.
 
     Args:
         robot: the mechanism with its geometry.
         region: a box. In each cell the other coordinates have their whole intervals.
         axes: the two coordinates of the plane.
-        margin, at_least, bounds, characteristic_length: as in `certify`.
+        margin, at_least, at_most, bounds, characteristic_length: as in `certify`.
         depth: the sides of the smallest cells are the region's sides over 2^depth.
         most_boxes: the most boxes for each cell.
         seconds: time for all cells. The largest cells come first. Cells that are not tried in time are not proved.
@@ -60,12 +61,13 @@ def certified_cells(
     if not isinstance(region, Box):
         raise InvalidSection("cells", repr(region), "a Box; a Cylinder has `certified_cylinder`")
     started, nodes, budget = time.perf_counter(), 2 ** whole("depth", depth, 0, 10) + 1, Budget(seconds)
-    statement = Statement.of(robot, margin, at_least, bounds, characteristic_length)
+    bound = robot.margin_named(margin).bound(at_least, at_most)
+    statement = Statement.of(robot, margin, bound, bounds, characteristic_length)
     index = index_of(robot, margin, statement.bounds, statement.length)
     chart = map_of(index, Section(region, axes), robot.pose_names, (nodes, nodes), seconds=seconds)
     most_boxes, lower = checked_boxes(most_boxes), LowerBounds(statement, region)
     proved, boxes, left, complete = _proofs(lower, chart, nodes - 1, most_boxes, budget)
-    return CertifiedRegion(margin, at_least, tuple(proved), boxes, left, complete, time.perf_counter() - started)
+    return CertifiedRegion(margin, bound, tuple(proved), boxes, left, complete, time.perf_counter() - started)
 
 
 def _proofs(
@@ -74,7 +76,7 @@ def _proofs(
     """Returns the proved cells of a chart of `size` by `size` cells, the number of boxes bounded, the boxes left in the
     smallest cells, and whether all cells were tried.
     """
-    holds, refuter = chart.values >= lower.statement.at_least, Refuter(lower.statement)  # NaN does not hold
+    holds, refuter = lower.statement.bound.room(chart.values) >= 0.0, Refuter(lower.statement)  # NaN does not hold
     cells, proved, left, boxes = deque([(0, 0, size)]), [], [np.empty((0, 2, chart.poses.shape[-1]))], 0
     while cells and not budget.spent:
         column, row, size = cells.popleft()

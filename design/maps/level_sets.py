@@ -1,4 +1,4 @@
-"""The level set: the part of a map where an index is at least a bound. Its area, boundary, mean and deviation.
+"""The level set: the part of a map where an index keeps a bound. Its area, boundary, mean and deviation.
 
 Each cell and its middle make four triangles. The map is taken as linear over each triangle. The triangles are cut
 exactly at the bound and at a curved boundary of the region, and integrated exactly. The only error is that of this
@@ -31,7 +31,7 @@ _GOOD, _INSET = 2, 3  # columns of a vertex, after its two coordinates
 
 @dataclass(frozen=True)
 class Integrals:
-    """Area-weighted figures over the part of a section where the index is at least a bound.
+    """Area-weighted figures over the part of a section where the index keeps a bound.
 
     Attributes:
         area: [m^2; m rad or rad^2 if angles are on the axes].
@@ -171,7 +171,7 @@ def integrals(chart: Map, bound: float | None) -> Integrals:
     """The figures of one map."""
     triangles = _triangles(chart)
     if bound is not None:
-        triangles = _clipped(triangles, _GOOD, bound)
+        triangles = _clipped(triangles, _GOOD, chart.sense * bound)
     triangles = _clipped(triangles, _INSET, 0.0)
     (ax, ay), (bx, by) = (np.moveaxis(triangles[:, k, :2] - triangles[:, 0, :2], -1, 0) for k in (1, 2))
     areas = 0.5 * np.abs(ax * by - ay * bx)
@@ -183,17 +183,17 @@ def integrals(chart: Map, bound: float | None) -> Integrals:
     values = values - mean
     squares = ((values**2).sum(axis=1) + values.sum(axis=1) ** 2) / 12.0  # of a linear function over a triangle
     deviation = math.sqrt(float((areas * squares).sum() / total))
-    return Integrals(total, mean, deviation)
+    return Integrals(total, chart.sense * mean, deviation)
 
 
 def boundary(chart: Map, bound: float | None) -> list[Array]:
-    """Closed polylines (k, 2) around the part of the plane where the index is at least the bound."""
-    good = chart.values
+    """Closed polylines (k, 2) around the part of the plane where the index keeps the bound."""
+    good = chart.good
     spare = np.where(np.isnan(good), np.nan, 1.0)
     if np.isnan(good).all():
         return []
     if bound is not None:
-        spare = good - bound
+        spare = good - chart.sense * bound
     if np.isfinite(chart.inset).all():
         scale = np.nanmax(np.abs(spare)) / np.abs(chart.inset).max()
         spare = np.minimum(spare, scale * chart.inset)
@@ -206,7 +206,7 @@ def _triangles(chart: Map) -> Array:
     """(t, 3, 4) vertices (first, second, value, inset). Triangles with a vertex out of reach are left out."""
     first, second = np.meshgrid(chart.first, chart.second)
     inset = np.where(np.isinf(chart.inset), 1.0, chart.inset)
-    nodes = np.stack([first, second, chart.values, inset], axis=-1)
+    nodes = np.stack([first, second, chart.good, inset], axis=-1)
     corners = [nodes[:-1, :-1], nodes[:-1, 1:], nodes[1:, 1:], nodes[1:, :-1]]
     middle = sum(corners) / 4.0
     sides = [np.stack([corners[k], corners[(k + 1) % 4], middle], axis=-2) for k in range(4)]

@@ -12,13 +12,14 @@ from kinematics import Array, FviBounds, Mechanism, Value
 
 @dataclass(frozen=True, eq=False)
 class Index(Value):
-    """A number at each pose; a larger number is better.
+    """A number at each pose.
 
     Attributes:
         name: the margin's name.
         unit: the unit of its numbers; empty if there is none.
         words: a description for people.
         value: (..., n) poses -> (...,), NaN out of reach.
+        sense: 1 if a larger number is better, -1 if a smaller one is.
         least: a lower bound of the value at every pose in reach; -inf if only NaN marks poses out of reach.
     """
 
@@ -26,11 +27,12 @@ class Index(Value):
     value: Callable[[Array], Array]
     unit: str = ""
     words: str = ""
+    sense: int = 1
     least: float = -np.inf
 
     def goodness(self, poses: Array) -> Array:
-        """(...,) the value; -inf out of reach."""
-        values = self.value(poses)
+        """(...,) the value, negative if smaller is better; -inf out of reach."""
+        values = self.sense * self.value(poses)
         return np.where(np.isnan(values), -np.inf, values)
 
 
@@ -52,5 +54,6 @@ def index_of(
         lambda poses: robot.margin(name, poses, bounds, characteristic_length),
         margin.unit,
         margin.words,
+        margin.sense,
         0.0 if margin.beyond_reach else -np.inf,
     )

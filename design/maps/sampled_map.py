@@ -1,7 +1,7 @@
 """Maps: the values of an index on a grid over a section, each the worst over the section's other coordinates.
 
-The worst value comes from a dense grid and from descents that start at its lowest local minima. It is an upper bound of
-the true worst value, close but not proved. For proofs see `certified_cells`. Poses are made in chunks, so that memory
+The worst value comes from a dense grid and from descents that start at its worst points. The true worst value is at
+least as bad, close but not proved. For proofs see `certified_cells`. Poses are made in chunks, so that memory
 holds little more than the map.
 """
 
@@ -35,7 +35,7 @@ class Map(Value):
 
     Attributes:
         section: the plane.
-        index: the index's name.
+        index, sense: the index's name and sense.
         first, second: (a,), (b,) values of the two axes [m or rad].
         values: (b, a) the worst value at each node; NaN if some pose of the node is out of reach. Nodes outside a
             curved boundary have values too, so that the map can be interpolated up to it.
@@ -46,6 +46,7 @@ class Map(Value):
 
     section: Section
     index: str
+    sense: int
     first: Array
     second: Array
     values: Array
@@ -53,11 +54,17 @@ class Map(Value):
     inset: Array
 
     @property
-    def lowest(self) -> tuple[float, Array]:
-        """Worst value of the nodes in the region and its pose (n,); -inf if one is out of reach."""
-        good = np.where(np.isnan(self.values), -np.inf, self.values)
+    def good(self) -> Array:
+        """(b, a) the values, negative if smaller is better."""
+        result: Array = self.sense * self.values
+        return result
+
+    @property
+    def worst(self) -> tuple[float, Array]:
+        """Worst value of the nodes in the region and its pose (n,); infinitely bad if one is out of reach."""
+        good = np.where(np.isnan(self.values), -np.inf, self.good)
         row, column = np.unravel_index(int(np.where(self.inset >= 0.0, good, np.inf).argmin()), good.shape)
-        return float(good[row, column]), self.poses[row, column]
+        return self.sense * float(good[row, column]), self.poses[row, column]
 
 
 def map_of(
@@ -91,9 +98,9 @@ def map_of(
     )
     points = np.stack(np.meshgrid(first, second), axis=-1)
     good, poses = worst_behind(index, section, names, points.reshape(-1, 2), Budget(seconds))
-    values = np.where(np.isinf(good) & (good < 0), np.nan, good).reshape(points.shape[:2])
+    values = index.sense * np.where(np.isinf(good) & (good < 0), np.nan, good).reshape(points.shape[:2])
     poses = poses.reshape(*points.shape[:2], len(names))
-    return Map(section, index.name, first, second, values, poses, section.inset(points))
+    return Map(section, index.name, index.sense, first, second, values, poses, section.inset(points))
 
 
 def window_of(section: Section) -> Window:

@@ -24,12 +24,13 @@ def window_of_part(
 
     None if there is no such part, or none that is narrower than the chart.
     """
-    window = _around_seen(section, chart, bound)
+    least = index.sense * bound
+    window = _around_seen(section, chart, least)
     if window is None:
         top = _climbed(index, section, names, chart)
-        if top is None or not _good(index, section, names, top[None])[0] >= bound:
+        if top is None or not _good(index, section, names, top[None])[0] >= least:
             return None
-        window = _around_point(index, section, names, chart, top, bound, budget)
+        window = _around_point(index, section, names, chart, top, least, budget)
     narrower = window is not None and _area(window) < 0.5 * (chart.first[-1] - chart.first[0]) * (
         chart.second[-1] - chart.second[0]
     )
@@ -46,7 +47,7 @@ def _around_point(
         if budget.spent or _area(window) == 0.0:
             return None
         look = map_of(index, section, names, (_NODES, _NODES), window=window)
-        rows, columns = np.nonzero((look.values >= least) & (look.inset >= 0.0))
+        rows, columns = np.nonzero((look.good >= least) & (look.inset >= 0.0))
         if len(rows) and min(np.ptp(columns), np.ptp(rows)) >= _WIDE:
             return window
         seen = _around_seen(section, look, least)
@@ -57,7 +58,7 @@ def _around_point(
 
 def _around_seen(section: Section, chart: Map, least: float) -> Window | None:
     """The window of the nodes that keep the bound, with a step and a half around them; None if no node does."""
-    rows, columns = np.nonzero((chart.values >= least) & (chart.inset >= 0.0))
+    rows, columns = np.nonzero((chart.good >= least) & (chart.inset >= 0.0))
     if not len(rows):
         return None
     spare = 1.5 * np.array([chart.first[1] - chart.first[0], chart.second[1] - chart.second[0]])
@@ -81,7 +82,7 @@ def _area(window: Window) -> float:
 
 def _climbed(index: Index, section: Section, names: tuple[str, ...], chart: Map) -> Array | None:
     """(2,) the best point that climbs from the best nodes in the region find; None if none has a value."""
-    good = np.where(np.isfinite(chart.values) & (chart.inset >= 0.0), chart.values, -np.inf)
+    good = np.where(np.isfinite(chart.values) & (chart.inset >= 0.0), chart.good, -np.inf)
     best = np.argsort(-good, axis=None, kind="stable")[:_CLIMBS]
     best = best[np.isfinite(good.ravel()[best])]
     if not len(best):

@@ -1,7 +1,7 @@
 """Where a margin is worst: a dense grid, then descents between its points.
 
-A grid alone gives too good a worst value, so descents start at its lowest poses and end with a step far below that of
-the grid. The answer is still that of a sample: an upper bound of the true worst value.
+A grid alone gives too good a worst value, so descents start at its worst poses and end with a step far below that of
+the grid. The answer is still that of a sample: the true worst value is at least as bad.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ DENSE = 1_000_000  # poses of a dense grid; the optimisation uses far fewer pose
 
 @dataclass(frozen=True, eq=False)
 class WorstPoses(Value):
-    """Local minima of a margin over a region, the lowest first.
+    """Locally worst values of a margin over a region, the worst first.
 
     Attributes:
-        values: (k,) the margin; -inf where a limb cannot reach and the margin has no value.
+        values: (k,) the margin; where a limb cannot reach and it has no value, -inf, or inf if smaller is better.
         poses: (k, n).
         sampled: the number of grid poses that were evaluated.
         complete: whether these were all poses of the grid; false if the time ended before.
@@ -66,7 +66,7 @@ def worst_poses(
     descents: int = 64,
     seconds: float = math.inf,
 ) -> WorstPoses:
-    """Local minima of a margin, from a grid of about that many poses and descents between them.
+    """Locally worst values of a margin, from a grid of about that many poses and descents between them.
 
     Args:
         robot: the mechanism with its geometry.
@@ -74,7 +74,7 @@ def worst_poses(
         margin: one of `robot.margins`.
         bounds, characteristic_length: as in `Mechanism.margin`.
         about: approximate number of grid poses.
-        descents: the number of lowest grid poses that a descent starts from.
+        descents: the number of worst grid poses that a descent starts from.
         seconds: after so much time no more grid poses are evaluated; see `WorstPoses.complete`.
 
     Raises:
@@ -83,17 +83,17 @@ def worst_poses(
     names, budget = robot.pose_names, Budget(seconds)
     region.check(names)
     about, descents = whole("about", about, 1), whole("descents", descents, 1)
-    counts = dense_counts(region.dimension, about)
+    counts, sense = dense_counts(region.dimension, about), robot.margin_named(margin).sense
     few = robot.margin(margin, region.spread(names), bounds, characteristic_length)
 
     def value(unit: Array) -> Array:
-        found = robot.margin(margin, region.from_unit(unit, names), bounds, characteristic_length)
+        found = sense * robot.margin(margin, region.from_unit(unit, names), bounds, characteristic_length)
         return np.where(np.isnan(found), -np.inf, found)
 
     if region.dimension == 0:
         pose = region.from_unit(np.empty((1, 0)), names)
         found = value(np.empty((1, 0)))
-        return WorstPoses(found, pose, 1, True, _typical(few))
+        return WorstPoses(sense * found, pose, 1, True, _typical(few))
     grid = sweep(value, budget.during(unit_grid(counts)), keep=4 * descents)
     unit, values = descend(value, grid.at, 1.0 / (np.array(counts) - 1.0))
     order = np.argsort(values, kind="stable")
@@ -102,7 +102,7 @@ def worst_poses(
     extent = region.extent(names)
     distinct = _distinct(poses, np.where(extent > 0.0, extent, 1.0))
     complete = grid.poses == math.prod(counts)
-    return WorstPoses(values[distinct], poses[distinct], grid.poses, complete, _typical(few))
+    return WorstPoses(sense * values[distinct], poses[distinct], grid.poses, complete, _typical(few))
 
 
 def _typical(values: Array) -> float:

@@ -29,7 +29,7 @@ class Round:
     poses: int
     promised: float
     found: float
-    shortfall: float  # distance of the worst requirement below its bound; <= 0 if all hold
+    shortfall: float  # by how much the worst requirement breaks its bound; <= 0 if all hold
     iterations: int
     seconds: float
 
@@ -48,18 +48,20 @@ class Candidate:
         robot: the mechanism with this geometry.
         worst: worst poses by margin, as far as the dense search went.
         objective: the worst value of the objective.
-        shortfall: distance of the worst requirement below its bound; <= 0 if all hold.
+        good: the same, negative if a smaller one is better.
+        shortfall: by how much the worst requirement breaks its bound; <= 0 if all hold.
     """
 
     robot: Mechanism
     worst: dict[str, WorstPoses]
     objective: float
+    good: float
     shortfall: float
 
     @property
     def rank(self) -> tuple[float, float]:
         """A larger rank is better: first whether requirements hold, then the objective."""
-        return -max(self.shortfall, 0.0), self.objective
+        return -max(self.shortfall, 0.0), self.good
 
     def __str__(self) -> str:
         short = f", requirements short by {self.shortfall:.3g}" if self.shortfall > 0.0 else ""
@@ -95,8 +97,9 @@ class Exchange:
 
     def note(self, robot: Mechanism, worst: dict[str, WorstPoses]) -> Candidate:
         """The candidate of a geometry with a dense search. The best one is kept."""
-        short = max((r.at_least - worst[r.margin].value for r in self.problem.requirements), default=-np.inf)
-        found = Candidate(robot, worst, worst[self.problem.objective].value, short)
+        short = max((-r.bound.room(worst[r.margin].value) for r in self.problem.requirements), default=-np.inf)
+        objective = worst[self.problem.objective].value
+        found = Candidate(robot, worst, objective, self.problem.good(objective), short)
         if np.isfinite(found.objective) and (self.seen is None or found.rank > self.seen.rank):
             self.seen = found
         self.last = found if found.shortfall > 0.0 else self.last
@@ -105,7 +108,7 @@ class Exchange:
     def better_than(self, found: Candidate, slack: float) -> Candidate | None:
         """The best geometry seen, if it is better than `found`; the NLP should also start from there. Else None."""
         best = self.seen
-        beats = best is not None and best.shortfall <= 0.0 and best.objective > found.objective + slack
+        beats = best is not None and best.shortfall <= 0.0 and best.good > found.good + slack
         return best if beats else None
 
     def robot_of(self, solution: NlpSolution) -> Mechanism:
@@ -126,13 +129,13 @@ class Exchange:
         After one start has converged, the starts together leave half of all the time for the later rounds.
         """
         best: NlpSolution | None = None
-        half, tried = self.budget.share(2), []
+        half, tried, good = self.budget.share(2), [], self.problem.good
         for k, first in enumerate(firsts, start=1):
             share = half.share(len(firsts) - k + 1) if best else self.budget.share(2)
             solution = solve(self.problem, poses, first, sizes, share.left)
             self.progress(f"start {k} of {len(firsts)}: {solution.objective:.5g} ({solution.status})")
             tried.append(solution)
-            if solution.converged and (best is None or solution.objective > best.objective):
+            if solution.converged and (best is None or good(solution.objective) > good(best.objective)):
                 best = solution
             if self.budget.spent or (best and half.spent):
                 break
@@ -174,12 +177,12 @@ class Exchange:
         The worst values of the margins are assumed to change linearly between the two.
         """
         best, beyond = self.seen, self.last
-        if best is None or beyond is None or best.shortfall > 0.0 or beyond.objective <= best.objective:
+        if best is None or beyond is None or best.shortfall > 0.0 or beyond.good <= best.good:
             return None
         share = 1.0
         for requirement in self.problem.requirements:
-            room = best.worst[requirement.margin].value - requirement.at_least
-            short = requirement.at_least - beyond.worst[requirement.margin].value
+            room = requirement.bound.room(best.worst[requirement.margin].value)
+            short = -requirement.bound.room(beyond.worst[requirement.margin].value)
             share = min(share, room / (room + short)) if short > 0.0 else share
         places = self.problem.places()
         start, end = (found.robot.geometry.vector()[places] for found in (best, beyond))
@@ -191,7 +194,7 @@ class Exchange:
 
     def _fail(self, poses: Array, tried: list[NlpSolution]) -> NlpSolution:
         """Raise the error of solutions that did not converge, after a dense search of the one that breaks the least."""
-        nearest = max(tried, key=lambda one: (-sum(one.violations.values()), one.objective))
+        nearest = max(tried, key=lambda one: (-sum(one.violations.values()), self.problem.good(one.objective)))
         robot = self.robot_of(nearest)
         if not self.budget.spent:
             self.note(robot, self.look(robot))

@@ -1,8 +1,9 @@
-"""A nonlinear program (NLP) that maximises the worst value over a fixed set of poses, solved by IPOPT.
+"""A nonlinear program (NLP) that makes the worst value as good as possible over a fixed set of poses, solved by IPOPT.
 
-It maximises t under these constraints. Every component of the objective margin is at least t at every pose. Every
-requirement holds at every pose with a small reserve. Every limb can reach. The geometry stays within its bounds and
-sums. Gradients and Hessians come from the mechanism's own expressions by automatic differentiation.
+It maximises t under these constraints. Every component of the objective margin (with the opposite sign if a smaller
+margin is better) is at least t at every pose. Every requirement holds at every pose with a small reserve. Every limb
+can reach. The geometry stays within its bounds and sums. Gradients and Hessians come from the mechanism's own
+expressions by automatic differentiation.
 
 Margins are divided by their size and variables by their range, so that a larger robot gives the same problem.
 """
@@ -35,7 +36,7 @@ class Problem:
 
     Attributes:
         robot: the prototype. Fields that are no variables keep its values.
-        objective: the margin whose worst value is maximised.
+        objective: the margin whose worst value should be as good as possible.
         variables, requirements, sums: the variables with their bounds, the requirements, and the limits of sums.
         fvi_bounds, characteristic_length: what the FVI is measured with; the length is the same for every geometry.
         spare: reserve of each requirement above its bound in the NLP, so that it also holds between the poses; relative
@@ -50,6 +51,14 @@ class Problem:
     fvi_bounds: FviBounds
     characteristic_length: float
     spare: float = 1e-4
+
+    def __post_init__(self) -> None:
+        for r in self.requirements:
+            self.robot.margin_named(r.margin).bound(r.at_least, r.at_most)
+
+    def good(self, objective: float) -> float:
+        """A value of the objective, negative if a smaller one is better."""
+        return self.robot.margin_named(self.objective).sense * objective
 
     def bounds(self) -> tuple[Array, Array]:
         """(k,) lowest and (k,) highest values of the variables."""
@@ -130,7 +139,7 @@ class NlpSolution(Value):
 
     Attributes:
         values: (k,) the variables.
-        objective: t, the worst objective over the poses.
+        objective: the worst value of the objective over the poses.
         status: IPOPT's own status; `converged` is true only if it means an optimum.
         violations: the shortfall of each requirement or sum at the returned point, the largest first; empty if all
             hold.
@@ -164,7 +173,7 @@ def solve(
     for place, value in zip(problem.places(), problem.from_unit(unit), strict=True):
         geometry[place] = value
     rows = {
-        f"{r.margin} >= {r.at_least:g}": _margin(problem, r.margin, poses, geometry, sizes, r.at_least) - problem.spare
+        f"{r.margin} {r.bound}": _margin(problem, r.margin, poses, geometry, sizes, r.bound.value) - problem.spare
         for r in problem.requirements
     }
     rows |= {str(limit): _room_of_sum(problem, limit, geometry) for limit in problem.sums}
@@ -186,7 +195,7 @@ def solve(
     stats, x = solver.stats(), np.array(answer["x"]).ravel()
     return NlpSolution(
         values=np.array(problem.from_unit(x[:-1])),
-        objective=float(x[-1]) * sizes[problem.objective],
+        objective=problem.good(float(x[-1])) * sizes[problem.objective],
         status=stats["return_status"],
         converged=stats["return_status"] == "Solve_Succeeded",
         violations=_violations(rows, np.array(answer["g"]).ravel()[objective.shape[0] :]),
@@ -223,9 +232,10 @@ def _items(vector: Any) -> list[Any]:
 def _margin(
     problem: Problem, name: str, poses: Array, geometry: ca.MX, sizes: Mapping[str, float], bound: float = 0.0
 ) -> ca.MX:
-    """All components of a margin minus a bound at all poses, over the margin's size."""
+    """By how much all components of a margin keep a bound at all poses, over the margin's size."""
     components = problem.robot.margin_components(name, problem.fvi_bounds, problem.characteristic_length)
-    return _mapped(problem, (components - bound) / sizes[name], poses, geometry)
+    room = problem.robot.margin_named(name).sense * (components - bound)
+    return _mapped(problem, room / sizes[name], poses, geometry)
 
 
 def _reach(problem: Problem, poses: Array, geometry: ca.MX) -> ca.MX:
@@ -284,7 +294,8 @@ def active_sets(
             found.append(f"{' + '.join(limit.fields)} at its upper bound {limit.at_most:g}")
     for requirement in problem.requirements:
         near = worst[requirement.margin]
-        size = max(abs(requirement.at_least), np.nan_to_num(near.typical))
-        if near.value <= requirement.at_least + closeness * size:
-            found.append(f"{requirement.margin} at its lower bound {requirement.at_least:g}")
+        required, side = requirement.bound, "lower" if requirement.bound.sense > 0 else "upper"
+        size = max(abs(required.value), np.nan_to_num(near.typical))
+        if required.room(near.value) <= closeness * size:
+            found.append(f"{requirement.margin} at its {side} bound {required.value:g}")
     return found

@@ -54,7 +54,7 @@ def synthesise(
     seconds: float = SECONDS,
     progress: Progress = lambda _: None,
 ) -> Synthesis:
-    """Maximise the worst objective over the region.
+    """Make the worst value of the objective over the region as good as possible.
 
     Args:
         problem: the variables, the requirements and what the FVI is measured with.
@@ -106,7 +106,7 @@ def _exchanged(
         rounds.append(_round(solution, found, len(poses)))
         exchange.progress(f"round {len(rounds)}: {rounds[-1]}")
         slack = tolerance * abs(solution.objective)
-        settled = found.objective >= solution.objective - slack and found.shortfall <= 0.0
+        settled = found.good >= problem.good(solution.objective) - slack and found.shortfall <= 0.0
         better = exchange.better_than(found, slack)
         if settled and better is None and all(worst.complete for worst in after.values()):
             return Synthesis(robot, before, after, rounds, solution.status, after[problem.objective].sampled)
@@ -133,11 +133,11 @@ def _offenders(
 ) -> Array:
     """(k, n) poses where the last answer is worse than promised; for the objective by more than `slack`.
 
-    If the objective is as good as promised, hundreds of its lowest poses are within the slack. They would only make the
+    If the objective is as good as promised, hundreds of its worst poses are within the slack. They would only make the
     next NLP slow.
     """
-    spare = problem.spare * sizes[margin]
-    floors = [r.at_least + spare for r in problem.requirements if r.margin == margin]
+    sense, spare = problem.robot.margin_named(margin).sense, problem.spare * sizes[margin]
+    floors = [sense * r.bound.value + spare for r in problem.requirements if r.margin == margin]
     if margin == problem.objective:
-        floors.append(solution.objective - slack)
-    return worst.poses[worst.values < max(floors)]
+        floors.append(problem.good(solution.objective) - slack)
+    return worst.poses[sense * worst.values < max(floors)]

@@ -10,6 +10,10 @@ from kinematics.dynamics.drive_torque import (
     require_payload,
     torques,
 )
+from kinematics.dynamics.frame_reaction import FrameReaction, frame_reaction
+from kinematics.dynamics.member_forces import MemberForces, member_forces
+from kinematics.dynamics.member_loads import LoadCase, MemberLoad, case_at_rest, case_in_motion
+from kinematics.dynamics.member_safety import LARGEST, Size, Slack, WorstDirection, demands, safety_factors
 from kinematics.dynamics.stiffness import (
     Transmission,
     mass_matrix,
@@ -23,20 +27,36 @@ from kinematics.dynamics.stiffness import (
 
 __all__ = [
     "GRAVITY",
+    "LARGEST",
+    "FrameReaction",
     "JointMotion",
+    "LoadCase",
+    "MemberForces",
+    "MemberLoad",
+    "Size",
+    "Slack",
     "Transmission",
+    "WorstDirection",
     "actuator_motion",
+    "case_at_rest",
+    "case_in_motion",
+    "demands",
     "derivatives_along",
+    "frame_reaction",
     "friction",
     "from_actuators",
     "inverse_dynamics",
     "joint_motion",
     "mass_matrix",
     "mass_matrix_symbolic",
+    "member_forces",
     "moving_bodies",
     "platform_stiffness",
     "require_payload",
+    "safety_factors",
+    "stiffness_parts",
     "stiffness_symbolic",
+    "sum_of",
     "to_actuators",
     "tool_stiffness",
     "torques",

@@ -2,7 +2,7 @@
 
 from kinematics.machine.beams import Beam, Section
 from kinematics.machine.bodies import UNIFORM, Bodies, InertiaRecord, Particle, Rod, Rotor
-from kinematics.machine.drive_train import REST, DriveTrain
+from kinematics.machine.drive_train import LINEAR, REST, ROTARY, DriveTrain
 from kinematics.machine.geometry_fields import TURN, FieldKind, Points, angle, frame, length, ratio, screw_pitch
 from kinematics.machine.geometry_record import GeometryRecord, kind_of, numbers_of
 from kinematics.machine.joint_ranges import JointRanges, Pair, PassiveJoint, RodRanges
@@ -27,16 +27,18 @@ from kinematics.machine.members import (
     bar,
     platform,
     shared_joints,
-    unjoined,
 )
 from kinematics.machine.statics import Cut, LimbStatics, rod_cut
 from kinematics.machine.structure import Structure
+from kinematics.machine.surroundings import Obstacle, PayloadHull, Surroundings
 
 __all__ = [
     "AXES",
+    "LINEAR",
     "MATERIALS",
     "ORIGIN",
     "REST",
+    "ROTARY",
     "TURN",
     "UNIFORM",
     "Beam",
@@ -54,9 +56,11 @@ __all__ = [
     "Load",
     "Material",
     "Member",
+    "Obstacle",
     "Pair",
     "Particle",
     "PassiveJoint",
+    "PayloadHull",
     "Plate",
     "Points",
     "Reference",
@@ -65,6 +69,7 @@ __all__ = [
     "Rotor",
     "Section",
     "Structure",
+    "Surroundings",
     "Tree",
     "TreeJoint",
     "Tube",
@@ -84,5 +89,4 @@ __all__ = [
     "screw_pitch",
     "shared_joints",
     "universal",
-    "unjoined",
 ]

@@ -77,11 +77,18 @@ class Particle(NamedTuple):
 class Rotor(NamedTuple):
     """An inertia [kg m^2] and the angle [rad] it turns by, a linear function of joints and pose.
 
-    Its axis keeps its direction. A mass that only slides is one too: its mass [kg] and how far it has slid [m].
+    A mass that only slides is one too: its mass [kg] and how far it has slid [m].
+
+    Attributes:
+        axis: (3,) the unit direction that it turns about; None if it slides, or if nobody knows it. The frame feels
+            only rotors with a known axis.
+        link: whose mass it is, beyond that link's particles; None of a drive.
     """
 
     inertia: float | ca.SX
     angle: ca.SX
+    axis: ca.SX | None = None
+    link: str | None = None
 
 
 class Rod(NamedTuple):

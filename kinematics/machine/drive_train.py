@@ -1,4 +1,4 @@
-"""The drive train between motor and actuator: gear, motor inertia, friction."""
+"""The drive train between motor and actuator: gear, motor inertia, friction, and how far the position may be off."""
 
 from __future__ import annotations
 
@@ -27,6 +27,10 @@ class DriveTrain:
         coulomb: [N m] or [N].
         viscous: [N m s/rad] or [N s/m].
         stiffness: of gear and servo loop, at the actuator [N m/rad] or [N/m]; inf if they do not give way.
+        encoder_resolution: one step of the encoder, at the actuator [rad or m]. The servo holds the position that the
+            encoder tells to one step, so the motor may be off by so much to either side.
+        backlash: how far the actuator moves freely while its motor stands, from one flank to the other [rad or m]. The
+            encoder is the motor's and is set to the middle, so the actuator may be off by half of it to either side.
 
     Raises:
         InvalidValue: a value is infinite, NaN or negative, or a gear ratio or stiffness is 0.
@@ -37,6 +41,8 @@ class DriveTrain:
     coulomb: PerActuator = 0.0
     viscous: PerActuator = 0.0
     stiffness: PerActuator = float("inf")
+    encoder_resolution: PerActuator = 0.0
+    backlash: PerActuator = 0.0
 
     def __post_init__(self) -> None:
         for f in fields(self):
@@ -63,6 +69,10 @@ class DriveTrain:
         coulomb, viscous = (self.of_actuators(name, speed.shape[-1]) for name in ("coulomb", "viscous"))
         return coulomb * np.sign(speed) * (np.abs(speed) > REST), viscous * speed
 
+    def position_errors(self, count: int) -> np.ndarray:
+        """(count,) how far each actuator may be off to either side [rad or m]: a step and half of the backlash."""
+        return self.of_actuators("encoder_resolution", count) + self.of_actuators("backlash", count) / 2
+
     def of_actuators(self, name: str, count: int) -> np.ndarray:
         """(count,) one field.
 
@@ -73,3 +83,8 @@ class DriveTrain:
         if np.ndim(value) and np.shape(value) != (count,):
             raise InvalidField("DriveTrain", name, value, f"one number, or {count}: one for each actuator")
         return np.broadcast_to(np.asarray(value, dtype=float), (count,))
+
+
+# Assumptions of this project, for mechanisms whose drives are not known; both are fine for a servo of today.
+ROTARY = DriveTrain(encoder_resolution=1e-4)  # rad: 16 bits a turn of the actuator
+LINEAR = DriveTrain(encoder_resolution=1e-6)  # m: a linear scale, or a screw of 10 mm a turn with 13 bits

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from itertools import combinations
 from typing import NamedTuple
 
 import casadi as ca
@@ -29,6 +27,16 @@ class Tube(NamedTuple):
     wall: ca.SX
 
     @property
+    def corners(self) -> ca.SX:
+        """(3, 2) its ends, of which all of its points are within `around` of the hull."""
+        return ca.horzcat(self.start, self.end)
+
+    @property
+    def around(self) -> ca.SX:
+        """[m]"""
+        return self.radius
+
+    @property
     def area(self) -> ca.SX:
         """Of the section [m^2]."""
         return math.pi * self.wall * (2 * self.radius - self.wall)
@@ -44,6 +52,16 @@ class Plate(NamedTuple):
 
     outline: ca.SX
     thickness: ca.SX
+
+    @property
+    def corners(self) -> ca.SX:
+        """(3, k) of the hull that all of its points are within `around` of."""
+        return self.outline
+
+    @property
+    def around(self) -> ca.SX:
+        """[m]"""
+        return self.thickness / 2
 
 
 class Member(NamedTuple):
@@ -72,11 +90,6 @@ class Member(NamedTuple):
 def bar(name: str, joints: tuple[str, ...], material: str, start: ca.SX, end: ca.SX, radius: ca.SX) -> Member:
     """A member that is one solid bar."""
     return Member(name, joints, material, (Tube(start, end, radius, radius),))
-
-
-def unjoined(members: Sequence[Member]) -> Iterator[tuple[Member, Member]]:
-    """The pairs of members that must not touch."""
-    return (pair for pair in combinations(members, 2) if not set(pair[0].joints) & set(pair[1].joints))
 
 
 def shared_joints(name: str, points: np.ndarray) -> list[str]:

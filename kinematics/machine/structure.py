@@ -20,6 +20,7 @@ class Structure:
         arm, rod, leg, link, plate, screw: the material of each kind.
         joint_stiffness: of each joint at a rod's end, along the rod [N/m]; inf for a joint that does not give way.
         joint_play: how far each joint at a rod's end lets the rod slip along itself [m], from one end to the other.
+            With a joint at each end the rod acts as one whose length is off by at most so much to either side.
 
     Raises:
         InvalidValue: it names the field.

@@ -34,7 +34,7 @@ class _Isotropic(Margin):
         """One component for each actuator."""
         return isotropic_components(robot.homogeneous_jacobian(measure.length))[self.place]
 
-    def smallest(self, robot: Mechanism, measure: Measure) -> ca.SX:
+    def worst(self, robot: Mechanism, measure: Measure) -> ca.SX:
         """With one root for all."""
         return isotropic(robot.homogeneous_jacobian(measure.length))[self.place]
 
@@ -81,7 +81,7 @@ class Fvi(Margin):
         """Speeds over v_wl, then forces over f_wl, one an actuator each."""
         return fvi_components(robot.homogeneous_jacobian(measure.length), measure.fvi)
 
-    def smallest(self, robot: Mechanism, measure: Measure) -> ca.SX:
+    def worst(self, robot: Mechanism, measure: Measure) -> ca.SX:
         """With one root for all speeds and one for all forces."""
         return fvi(robot.homogeneous_jacobian(measure.length), measure.fvi)
 

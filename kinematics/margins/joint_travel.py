@@ -25,10 +25,13 @@ class JointTravel(Margin):
         rooms += [high - joints[i] for i, (_, high) in enumerate(limits) if np.isfinite(high)]
         return ca.vertcat(*rooms) if rooms else ca.SX(math.inf)
 
-    def limbs(self, robot: Mechanism) -> list[int] | None:
-        """That of the joint."""
-        limits = robot.ranges.limits(len(robot.joint_names))
-        return [int(i) + 1 for side in limits.T for i in np.flatnonzero(np.isfinite(side))] or None
+    def places(self, robot: Mechanism) -> list[str] | None:
+        """The end of the range, and the joint's name."""
+        limits, names = robot.ranges.limits(len(robot.joint_names)), robot.joint_names
+        sides = zip(("lower", "upper"), limits.T, strict=True)
+        return [
+            f"the {word} end of {names[i]}" for word, side in sides for i in np.flatnonzero(np.isfinite(side))
+        ] or None
 
 
 JOINT_TRAVEL = JointTravel()

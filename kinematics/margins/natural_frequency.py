@@ -19,6 +19,7 @@ class NaturalFrequency(WeakestDirection):
 
     name = "natural_frequency"
     unit = "Hz"
+    records = ("inertia", "structure", "load")
     words = "smallest natural frequency on locked drives, with the payload of the load"
 
     def pencil(self, robot: Mechanism) -> Pencil | None:

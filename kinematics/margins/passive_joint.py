@@ -23,6 +23,16 @@ class PassiveJoints(Margin):
         """One or two components for each joint."""
         return _rows(robot, lambda joint, limits: joint.room(limits))
 
+    def places(self, robot: Mechanism) -> list[str]:
+        """The joints in order."""
+        assert isinstance(robot.ranges, RodRanges)
+        model = robot.model()
+        return [
+            f"passive joint {i + 1}, at the {('drive', 'platform')[joint.end]}"
+            for i, joint in enumerate(robot.passive_joints(model.pose, model.joints, model.g))
+            for _ in joint.room(robot.ranges.passive)
+        ]
+
     def to_refute(self, robot: Mechanism, claim: ClaimSymbols) -> ToShow:
         """By `PassiveJoint.within`: sines and cosines in place of the arctangent."""
         return ToShow(_rows(robot, lambda joint, limits: joint.within(limits, claim.bound)), ca.SX(0, 0))

@@ -21,10 +21,10 @@ class Reach(Margin):
         model = robot.model()
         return robot.reach(model.pose, model.g)
 
-    def limbs(self, robot: Mechanism) -> list[int]:
+    def places(self, robot: Mechanism) -> list[str]:
         """The limbs in order."""
         model = robot.model()
-        return [i + 1 for i in range(robot.reach(model.pose, model.g).numel())]
+        return [f"limb {i + 1}" for i in range(robot.reach(model.pose, model.g).numel())]
 
 
 REACH = Reach()

@@ -28,9 +28,9 @@ class WorstOfJq(Margin):
         """One component for each limb."""
         return _normalised(robot)
 
-    def limbs(self, robot: Mechanism) -> list[int]:
+    def places(self, robot: Mechanism) -> list[str]:
         """The limbs in order."""
-        return [i + 1 for i in range(len(robot.joint_names))]
+        return [f"limb {i + 1}" for i in range(len(robot.joint_names))]
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
         """Each entry with its sign, without the quotient; and that the scales are above 0."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from functools import partial
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -56,6 +56,8 @@ class Pencil(NamedTuple):
 
 class WeakestDirection(Margin):
     """The smallest eigenvalue of a stiffness; infinite where nothing gives way."""
+
+    records: ClassVar[tuple[str, ...]] = ("inertia", "structure")
 
     @abstractmethod
     def pencil(self, robot: Mechanism) -> Pencil | None:

@@ -1,13 +1,14 @@
 """General mathematics: real roots, path tracking, symbolic linear algebra, distances, orientations."""
 
 from kinematics.mathematics.bisection import bisected
+from kinematics.mathematics.convex_distance import Convex, shortest_way, signed_distance
 from kinematics.mathematics.distinct_solutions import distinct, gaps, working_first
 from kinematics.mathematics.double_roots import not_below_zero
 from kinematics.mathematics.homotopy import refine, track
 from kinematics.mathematics.jacobi_rotations import singular_values
+from kinematics.mathematics.linear_forms import LinearForms
 from kinematics.mathematics.orientation import angles, rotation, turn
-from kinematics.mathematics.polynomial_product import product
-from kinematics.mathematics.polynomial_roots import real_roots
+from kinematics.mathematics.polynomials import product, real_roots
 from kinematics.mathematics.positive_definite import (
     cholesky,
     lower_solved,
@@ -17,10 +18,12 @@ from kinematics.mathematics.positive_definite import (
 )
 from kinematics.mathematics.rigid_displacements import displacement, leg_quadrics, study_quadric
 from kinematics.mathematics.scaling import near_inverse
-from kinematics.mathematics.segment_distance import segment_distances, segment_gap_symbolic
+from kinematics.mathematics.segment_distance import segment_distances
 from kinematics.mathematics.symbolic_linear_algebra import Minors, adjugate, determinant, volume
 
 __all__ = [
+    "Convex",
+    "LinearForms",
     "Minors",
     "adjugate",
     "angles",
@@ -41,7 +44,8 @@ __all__ = [
     "rotation",
     "row_sums",
     "segment_distances",
-    "segment_gap_symbolic",
+    "shortest_way",
+    "signed_distance",
     "singular_values",
     "smallest_eigenvalue",
     "study_quadric",

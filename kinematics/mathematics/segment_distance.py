@@ -27,11 +27,6 @@ def segment_distances(one: Array, two: Array) -> Array:
     return result
 
 
-def segment_gap_symbolic(one: ca.SX, two: ca.SX) -> ca.SX:
-    """(3,) the shortest way from one segment to another, as of `nearest_symbolic`."""
-    return nearest_symbolic(one, two)[0]
-
-
 def nearest_symbolic(one: ca.SX, two: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
     """The shortest way (3,) from one segment to another, each (3, 2) with its ends in columns [m]; and its two ends.
 

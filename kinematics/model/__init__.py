@@ -2,6 +2,7 @@
 
 from kinematics.model.abstract_margin import ClaimSymbols, Margin, Measure, ToShow, by_name, signed
 from kinematics.model.aspect import in_aspect, joined_to_home
+from kinematics.model.bound import Bound
 from kinematics.model.continuation import continued, polished, reached
 from kinematics.model.indices import (
     FviBounds,
@@ -20,6 +21,7 @@ from kinematics.model.working_mode import Mode
 
 __all__ = [
     "BestFit",
+    "Bound",
     "Build",
     "ClaimSymbols",
     "EncoderCheck",

@@ -44,6 +44,7 @@ class Definition(ABC):
     counts_turns: ClassVar[bool] = False  # whether an angle a turn on is another pose, as on a screw
     fvi_bounds: ClassVar[FviBounds]
     mirrors: ClassVar[tuple[tuple[str, ...], ...]] = ()  # coordinates whose signs change together: a mirror image
+    tool_member: ClassVar[str] = "platform"  # the member that carries the tool
     margins: ClassVar[Mapping[str, Margin]]  # by name: `by_name(*STANDARD, ...)`, and what the mechanism adds
 
     @classmethod
@@ -127,6 +128,21 @@ class Definition(ABC):
         j_q, by_twist = ca.diag(ca.jacobian(phi, joints)), self.closure_by_twist(pose, joints, g)
         efforts = ca.SX.eye(joints.numel())
         return [LimbStatics(-(by_twist[i, :] / j_q[i]).T, ca.SX(1, 1), efforts[:, i]) for i in range(joints.numel())]
+
+    @classmethod
+    def beyond_twist(cls, pose: ca.SX, g: SimpleNamespace, limb: int | None, point: ca.SX) -> ca.SX:  # noqa: ARG003
+        """(3, f - n) how a point that the pose carries moves with the freedoms of `statics` that follow the twist.
+
+        `limb`, from 0, is one that holds the point's body; None if no limb does.
+        """
+        return ca.SX(3, 0)
+
+    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
+        """Bodies in the way whose masses follow from no section: the base, rails, slides, motors.
+
+        Those of the base share the joint "base".
+        """
+        return []
 
     @classmethod
     def drives(cls, g: SimpleNamespace) -> ca.SX:  # noqa: ARG003

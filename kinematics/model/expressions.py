@@ -67,12 +67,16 @@ def homogeneous(robot: Mechanism, _: Model, length: float) -> list[ca.SX]:
 
 
 def margin(robot: Mechanism, _: Model, name: str, measure: Measure) -> list[ca.SX]:
-    return [robot.margins[name].smallest(robot, measure)]
+    return [robot.margins[name].worst(robot, measure)]
+
+
+def margin_components(robot: Mechanism, model: Model, name: str, measure: Measure) -> Build:
+    return [model.pose], [robot.margins[name].components(robot, measure)]
 
 
 def margin_everywhere(robot: Mechanism, model: Model, name: str) -> Build:
     measure = Measure(robot.fvi_bounds, robot.characteristic_length)
-    return [model.pose], [robot.margins[name].smallest(robot, measure)]
+    return [model.pose], [robot.margins[name].worst(robot, measure)]
 
 
 def skeleton(robot: Mechanism, model: Model) -> list[ca.SX]:

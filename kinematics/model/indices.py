@@ -8,6 +8,7 @@ a characteristic length turns rotations into lengths.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import reduce
 
@@ -101,12 +102,17 @@ def fvi(j_mw: ca.SX, bounds: FviBounds) -> ca.SX:
 
 
 def smallest(components: ca.SX) -> ca.SX:
-    """Their minimum; the interpreter's FMIN passes NaN on."""
-    return reduce(ca.fmin, [components[i] for i in range(components.numel())])
+    """Their minimum, inf if there are none; the interpreter's FMIN passes NaN on."""
+    return reduce(ca.fmin, [components[i] for i in range(components.numel())] or [ca.SX(math.inf)])
 
 
-def sides(component: ca.SX) -> list[ca.SX]:
-    """The numbers of which a component is the minimum; itself where it is none."""
-    if component.op() == ca.OP_FMIN:
-        return [*sides(component.dep(0)), *sides(component.dep(1))]
+def largest(components: ca.SX) -> ca.SX:
+    """Their maximum; the interpreter's FMAX passes NaN on."""
+    return reduce(ca.fmax, [components[i] for i in range(components.numel())])
+
+
+def sides(component: ca.SX, of: int = ca.OP_FMIN) -> list[ca.SX]:
+    """The numbers of which a component is the minimum, or the maximum for `OP_FMAX`; itself where it is none."""
+    if component.op() == of:
+        return [*sides(component.dep(0), of), *sides(component.dep(1), of)]
     return [component]

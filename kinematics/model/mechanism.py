@@ -14,7 +14,7 @@ import numpy as np
 from kinematics.arrays import Array, checked, together
 from kinematics.errors import InvalidShape, InvalidValue, UnreachablePose
 from kinematics.evaluation import BlockProgram, evaluate
-from kinematics.machine import GeometryRecord, InertiaRecord, JointRanges, Load, Structure
+from kinematics.machine import GeometryRecord, InertiaRecord, JointRanges, Load, Structure, Surroundings
 from kinematics.model import expressions
 from kinematics.model.abstract_margin import Margin, Measure
 from kinematics.model.continuation import forward_near
@@ -24,6 +24,7 @@ from kinematics.model.programs import Write, program_of
 from kinematics.model.symbolic_model import Model, model_of
 from kinematics.model.working_mode import Mode, mode_at
 
+_RECORDS = ("geometry", "inertia", "ranges", "structure", "load", "surroundings")
 _SLICE = 8192  # poses whose matrices are in memory at once
 
 
@@ -47,6 +48,7 @@ class Mechanism(Definition):
         *,
         structure: Structure | None = None,
         load: Load | None = None,
+        surroundings: Surroundings | None = None,
     ) -> None:
         """A robot; each part has a default.
 
@@ -58,6 +60,7 @@ class Mechanism(Definition):
                 By default the usual branches are used.
             structure: the materials of the members, and how the joints between them give way.
             load: what `natural_frequency` and `strength` are for.
+            surroundings: what it must not touch besides itself; by default nothing.
 
         Raises:
             InvalidValue, InvalidShape, InvalidGeometry: the message names the part.
@@ -79,12 +82,15 @@ class Mechanism(Definition):
         self.load = load if load is not None else Load()
         if not isinstance(self.load, Load):
             raise InvalidValue(f"{type(self).__name__} load", load, "a Load")
+        self.surroundings = surroundings if surroundings is not None else Surroundings()
+        if not isinstance(self.surroundings, Surroundings):
+            raise InvalidValue(f"{type(self).__name__} surroundings", surroundings, "a Surroundings")
         joints = _vector(home_joints, "home_joints", self.joint_names)
         self._given = _vector(home, "home", self.pose_names), joints
         self.home = np.array(self._given[0] or self.default_home(self.geometry), dtype=float) + 0.0  # no -0
         self.home.setflags(write=False)
         self.mode = mode_at(self, np.array(joints) if joints else None)
-        records = self.geometry, self.inertia, self.ranges, self.structure, self.load
+        records = tuple(getattr(self, name) for name in _RECORDS)
         self._identity = (type(self), *records, tuple(self.home.tolist()), self.mode)
         self._hash = hash(self._identity)
 
@@ -118,10 +124,13 @@ class Mechanism(Definition):
         """The same robot with another load."""
         return self._with(load=load)
 
+    def with_surroundings(self, surroundings: Surroundings) -> Self:
+        """The same robot in another place, or with another payload's hull."""
+        return self._with(surroundings=surroundings)
+
     def _with(self, **changed: Any) -> Self:
-        names = ("geometry", "inertia", "ranges", "structure", "load")
         home, home_joints = self._given
-        records = {name: getattr(self, name) for name in names} | changed
+        records = {name: getattr(self, name) for name in _RECORDS} | changed
         return type(self)(**records, home=home, home_joints=home_joints)
 
     def __repr__(self) -> str:
@@ -236,7 +245,7 @@ class Mechanism(Definition):
     def margin(
         self, name: str, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None
     ) -> Array:
-        """(...,) a named margin: the smallest of its components at each pose; a larger margin is better.
+        """(...,) a named margin: the worst of its components at each pose. Its `sense` says whether larger is better.
 
         Every mechanism has the margins `kinematics.STANDARD`; `margins` holds these and the mechanism's other ones. NaN
         where the pose is out of reach, except for reach itself.
@@ -249,6 +258,20 @@ class Mechanism(Definition):
         else:
             program = self.margin_program(name, bounds, characteristic_length)
         return evaluate(program, self._poses(pose), blank=True)[0][..., 0]
+
+    def margin_place(
+        self, name: str, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None
+    ) -> str | None:
+        """Where a margin is smallest at one pose (n,), in words, such as "limb 1" or "rod 1 and rod 3".
+
+        None if its components have no place of their own, or if the pose is out of reach.
+        """
+        places = self.margin_named(name).places(self)
+        if places is None:
+            return None
+        measure = Measure(bounds or self.fvi_bounds, self._length(characteristic_length))
+        values = evaluate(self.program(expressions.margin_components, name, measure), self._poses(pose))[0].ravel()
+        return None if np.isnan(values).all() else places[int(np.nanargmin(values))]
 
     def margin_named(self, name: str) -> Margin:
         """One of `margins`.
@@ -268,7 +291,7 @@ class Mechanism(Definition):
         return self.program(expressions.within_reach, expressions.margin, name, measure)
 
     def margin_components(self, name: str, bounds: FviBounds, characteristic_length: float) -> ca.SX:
-        """A margin's components in the model's symbols `pose` and `geometry`. Each must be at least the bound.
+        """A margin's components in the model's symbols `pose` and `geometry`. Each must keep the bound.
 
         Raises:
             InvalidValue: the mechanism has no such margin.

@@ -2,8 +2,10 @@
 
 from kinematics.multibody.mjcf import mjcf
 from kinematics.multibody.open_tree import tree_motion
+from kinematics.multibody.swept_box import swept_box
 
 __all__ = [
     "mjcf",
+    "swept_box",
     "tree_motion",
 ]

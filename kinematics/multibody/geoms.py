@@ -13,15 +13,17 @@ _WEIGHTLESS = {"mass": "0", "contype": "0", "conaffinity": "0"}
 
 
 def add_geoms(members: list[Member], bodies: dict[str, Xml.Element], asset: Xml.Element, reference: Reference) -> None:
-    """Add each member to the body of its link, where there is one: tubes as capsules, plates as meshes.
+    """Add each member to the body of its link: tubes as capsules, plates as meshes.
+
+    Rods that are no bodies are left out.
 
     Args:
-        bodies: by the names of their links.
+        bodies: by the names of their links; what is on the base belongs to the body "".
         asset: the element that holds the meshes.
         reference: an expression's value at the pose of the document.
     """
     for member in members:
-        body = bodies.get(member.link or member.name)
+        body = bodies[""] if "base" in member.joints else bodies.get(member.link or member.name)
         for k, shape in enumerate(member.shapes if body is not None else ()):
             name = member.name if len(member.shapes) == 1 else f"{member.name}, {k + 1}"
             geom = Xml.SubElement(body, "geom", _WEIGHTLESS, name=name)  # type: ignore[arg-type]

@@ -42,12 +42,15 @@ def mjcf(robot: Mechanism, pose: Array, payload: float = 0.0) -> str:
     Xml.SubElement(root, "compiler", _COMPILER)
     option = Xml.SubElement(root, "option", timestep=f"{_STEP:g}", integrator="RK4", gravity=f"0 0 -{GRAVITY}")
     Xml.SubElement(option, "flag", contact="disable", energy="enable")
-    elements = _links(Xml.SubElement(root, "worldbody"), cut)
+    world = Xml.SubElement(root, "worldbody")
+    elements = _links(world, cut)
     tendons, equality = (Xml.SubElement(root, tag) for tag in ("tendon", "equality"))
     _close(cut, elements, tendons, equality)
     _drive(robot, cut, elements, tendons, Xml.SubElement(root, "actuator"))
     model, asset = robot.model(), Xml.SubElement(root, "asset")
-    add_geoms(robot.members(model.pose, model.joints, model.g), elements, asset, cut.reference)
+    symbols = model.pose, model.joints, model.g
+    members = [*robot.members(*symbols), *robot.base_members(*symbols)]
+    add_geoms(members, elements | {"": world}, asset, cut.reference)
     for element in (tendons, equality, asset):
         if not len(element):
             root.remove(element)

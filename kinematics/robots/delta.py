@@ -28,6 +28,7 @@ from kinematics.robots.shared import (
     height_in_reach,
     limb_members,
     means_and_differences,
+    motors,
     radial_directions,
     studs,
 )
@@ -56,6 +57,8 @@ class DeltaGeometry(GeometryRecord):
     rod_radius: float = length(0.006, doc="of the rods' tubes, outside")
     rod_wall: float = length(0.0015, doc="of the rods' tubes")
     plate_thickness: float = length(0.012, doc="of the plate")
+    motor_radius: float = length(0.040, doc="of the motors")
+    motor_length: float = length(0.080, doc="of the motors along their axes, without their round ends")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -89,6 +92,7 @@ class Delta(PairedArms):
     joint_units = ("rad",) * 3
     rotations = ()
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
+    tool_member = "plate"
     margins = by_name(*STANDARD, INTERNAL_DETERMINANT, INTERNAL_STIFFNESS, PASSIVE_JOINT)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "omega_z")
     row_combinations = means_and_differences(3)
@@ -152,6 +156,10 @@ class Delta(PairedArms):
         shapes = platform(corners, np.column_stack([np.real(flat), np.imag(flat)]), g.plate_thickness)
         limbs = limb_members(type(self), pose, joints, g, g.parallelogram_width)
         return [*limbs, Member("plate", ("B1", "B2", "B3"), "plate", shapes)]
+
+    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
+        """The motors."""
+        return motors(self.limbs(g), g)
 
     @classmethod
     def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:

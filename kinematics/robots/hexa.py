@@ -15,7 +15,7 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import TURN, Bodies, GeometryRecord, Member, angle, length
-from kinematics.margins import PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
+from kinematics.margins import ANGLE_ACCURACY, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.model import Build, FviBounds, Model, by_name
 from kinematics.robots.gough_stewart import (
     GoughStewart,
@@ -33,6 +33,7 @@ from kinematics.robots.shared import (
     arms_and_rods,
     columns,
     limb_members,
+    motors,
     radial_directions,
     twins,
     upright_limbs,
@@ -67,6 +68,8 @@ class HexaGeometry(GeometryRecord):
     rod_radius: float = length(0.006, doc="of the rods' tubes, outside")
     rod_wall: float = length(0.0015, doc="of the rods' tubes")
     plate_thickness: float = length(0.008, doc="of the platform")
+    motor_radius: float = length(0.040, doc="of the motors")
+    motor_length: float = length(0.080, doc="of the motors along their axes, without their round ends")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -110,7 +113,7 @@ class Hexa(SixLegs, RotaryLimbs):
     inertia: HexaInertia
     joint_units = ("rad",) * 6
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=1.0, force=50.0)
-    margins = by_name(*STANDARD, ROTATIONAL_STIFFNESS, PASSIVE_JOINT)
+    margins = by_name(*STANDARD, ANGLE_ACCURACY, ROTATIONAL_STIFFNESS, PASSIVE_JOINT)
 
     @staticmethod
     def default_home(geometry: HexaGeometry) -> tuple[float, ...]:
@@ -166,6 +169,10 @@ class Hexa(SixLegs, RotaryLimbs):
         """Arms, rods and platform."""
         platform = self.platform_member(self.platform_points(pose, g), g)
         return [*limb_members(type(self), pose, joints, g, None), platform]
+
+    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
+        """The motors."""
+        return motors(self.limbs(g), g)
 
     @classmethod
     def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:

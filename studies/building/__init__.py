@@ -4,6 +4,7 @@ from studies.building.inside_region import leaving
 from studies.building.load import load_study
 from studies.building.mechanisms import installed_mechanisms
 from studies.building.objects import (
+    FRAME_FILE,
     approach_limits,
     drive_file_names,
     drive_of,
@@ -18,6 +19,7 @@ from studies.building.objects import (
 )
 
 __all__ = [
+    "FRAME_FILE",
     "approach_limits",
     "drive_file_names",
     "drive_of",

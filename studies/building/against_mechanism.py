@@ -119,10 +119,21 @@ def at_odds(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[Key
     if isinstance(certified, tuple) and not set(map(str, certified)) <= set(mechanism.margins):
         yield ("certify", "margins")
     for i, margin in _rows(data, "requirement", "margin"):
-        if margin not in mechanism.margins:
+        if not isinstance(margin, str) or margin not in mechanism.margins:
             yield ("requirement", i, "margin")
-        if margin == "reach" and _is_below_zero(data["requirement"][i].get("at_least")):
+        elif mechanism.margins[margin].word not in (row := data["requirement"][i]):
+            yield ("requirement", i, mechanism.margins[margin].word)
+        elif margin == "reach" and _is_below_zero(row["at_least"]):
             yield ("requirement", i, "at_least")
+
+
+def wrong_words(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[tuple[KeyPath, str]]:
+    """The path of each bound that a requirement's margin does not have, and what would be right."""
+    for i, name in _rows(data, "requirement", "margin"):
+        margin = mechanism.margins.get(name) if isinstance(name, str) else None
+        for word in ("at_least", "at_most"):
+            if margin is not None and word != margin.word and word in data["requirement"][i]:
+                yield ("requirement", i, word), margin.right_word
 
 
 def _counted(node: Key | Table, joints: int) -> Key | Table:

@@ -57,18 +57,24 @@ def ranges_of(study: Study) -> JointRanges:
 
 def hardware_tables(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> dict[str, Table]:
     """The keys of `[inertia]`, `[structure]`, `[material]` and `[ranges]`. `raw` has the study's own materials."""
-    own = subtable(raw, "material")
-    material = Key("a material out of", choices=(*MATERIALS, *(name for name in own if name not in MATERIALS)))
+    materials = subtable(raw, "material")
+    known = (*MATERIALS, *(name for name in materials if name not in MATERIALS))
     masses = {f.name: _key(f, mechanism.Inertia.dimensions, " >= 0") for f in fields(mechanism.Inertia)}
     ranges = {f.name: _key(f, mechanism.Ranges.dimensions) for f in fields(mechanism.Ranges)}
     joints = Key(
         f"finite low < high, one pair or {len(mechanism.joint_names)} pairs", joint_unit(mechanism), place=True
     )
+    own, unit = table_of(InertiaTable), joint_unit(mechanism)
+    error = Key(f"a number >= 0, or one a joint{'' if unit is not Dimension.NONE else ' (rad or m)'}", unit, place=True)
+    drives = own.keys["drive_train"]
+    assert isinstance(drives, Table)
     return {
-        "inertia": Table({**masses, **table_of(InertiaTable).keys}),
+        "inertia": Table(masses | {"drive_train": drives.updated({"encoder_resolution": error, "backlash": error})}),
         "ranges": Table(ranges | {"joints": joints}),
-        "material": Table(dict.fromkeys(own, table_of(MaterialTable))),
-        "structure": Table(dict.fromkeys(_member_kinds(mechanism), material)).updated(table_of(StructureTable).keys),
+        "material": Table(dict.fromkeys(materials, table_of(MaterialTable))),
+        "structure": Table(dict.fromkeys(_member_kinds(mechanism), Key("a material out of", choices=known))).updated(
+            table_of(StructureTable).keys
+        ),
     }
 
 

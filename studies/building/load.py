@@ -8,9 +8,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from kinematics import InvalidGeometry
-from studies.building.against_mechanism import at_odds, study_table
+from studies.building.against_mechanism import at_odds, study_table, wrong_words
 from studies.building.mechanisms import MechanismRefused, NamedMechanism, mechanism_named
-from studies.building.objects import path_of
+from studies.building.objects import path_of, robot_of
+from studies.building.surroundings import require_room
 from studies.errors import Fault, KeyPath, StudyError, spelled
 from studies.study_file import Conversion, Finding, Key, Study, Table, TomlFile, WaypointTable, table_of
 from trajectory import InvalidPath, read_waypoints
@@ -37,6 +38,10 @@ def load_study(file: TomlFile, allow_code: bool = False) -> Study:
         table = study_table(mechanism, raw)
         data = conversion.to_si(raw, table)
         wrong = set(at_odds(data, mechanism))
+        for path, expected in wrong_words(data, mechanism):
+            key = conversion.spelling[path]
+            conversion.findings.append(Finding(key, f"{key[-1]} = {spelled(file.value(key))}", expected))
+            wrong.discard((*path[:-1], expected.partition(",")[0]))
     else:
         table = table_of(Study)
         data = conversion.to_si(_without_the_mechanism_s(raw), table)
@@ -56,6 +61,7 @@ def load_study(file: TomlFile, allow_code: bool = False) -> Study:
         key = conversion.spelling.get(("geometry", error.field), ("geometry",))
         raise StudyError([file.fault(key, spelled(file.value(key)), error.expected)]) from error
     _require_thin_walls(study, file, conversion)
+    require_room(robot_of(study), file)
     return _with_waypoints(study, file, conversion, named.mechanism_class.pose_names)
 
 

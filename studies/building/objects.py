@@ -22,6 +22,7 @@ from kinematics import (
 )
 from studies.building.hardware import inertia_of, load_of, ranges_of, structure_of
 from studies.building.inside_region import leaving
+from studies.building.surroundings import surroundings_of
 from studies.errors import HomeOutOfReach, StudyError
 from studies.study_file import (
     ApproachTable,
@@ -39,10 +40,11 @@ from trajectory import Limits, Path, PoseBounds, RoundedPath, Setpoints, TimingL
 from trajectory.drive_files import Drive, drive_files
 
 OBJECTIVE = "fvi"
+FRAME_FILE = "frame_reaction.csv"  # what the machine exerts on its frame, beside the set-points
 
 
 def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
-    """The robot with the study's masses and joint ranges; `geometry` replaces the study's own geometry."""
+    """The robot with the study's masses, ranges and surroundings; `geometry` replaces the study's own geometry."""
     kind = study.mechanism_class
     joints = None if study.home is None else study.home.joints
     return kind(
@@ -53,6 +55,7 @@ def robot_of(study: Study, geometry: GeometryRecord | None = None) -> Mechanism:
         home_joints=joints,
         structure=structure_of(study),
         load=load_of(study),
+        surroundings=surroundings_of(study),
     )
 
 
@@ -107,7 +110,7 @@ def problem_of(study: Study) -> Problem:
         robot=robot,
         objective=OBJECTIVE,
         variables=tuple(variables),
-        requirements=tuple(Requirement(r.margin, r.at_least) for r in study.requirement),
+        requirements=tuple(Requirement(r.margin, r.at_least, r.at_most) for r in study.requirement),
         sums=tuple(sums),
         fvi_bounds=fvi_bounds_of(study),
         characteristic_length=own_length or robot.characteristic_length,
@@ -151,7 +154,9 @@ def drive_of(drive: DriveTable) -> Drive:
 
 
 def drive_file_names(study: Study, file: TomlFile, asked_for: Sequence[str] | None) -> list[str]:
-    """The drive files' names. A trial at rest along the path finds early what a format cannot express.
+    """The names of the drive files and of the file beside them.
+
+    A trial at rest along the path finds early what a format cannot express.
 
     Args:
         asked_for: formats of the command line, which replace the study's own.
@@ -166,7 +171,8 @@ def drive_file_names(study: Study, file: TomlFile, asked_for: Sequence[str] | No
     try:
         robot, drive = robot_of(study), drive_of(asked.drive)
         at_rest = _along(robot, path_of(asked, robot.pose_names), asked.period)
-        return [name for stem in stems for name in drive_files(stem, at_rest, asked.files, drive)]
+        names = [name for stem in stems for name in drive_files(stem, at_rest, asked.files, drive)]
+        return [*names, FRAME_FILE]
     except InvalidValue as error:
         by = f"for --format {' --format '.join(asked_for)}" if asked_for else ""
         key = ("trajectory",) if asked_for else ("trajectory", "files")

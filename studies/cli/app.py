@@ -91,6 +91,10 @@ def certify(
         float | None,
         typer.Option("--at-least", help="Prove this bound of --margin (default: the required bound, else the best)."),
     ] = None,
+    at_most: Annotated[
+        float | None,
+        typer.Option("--at-most", help="The same for a margin that is better smaller, such as position_accuracy."),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option("--out", help="Folder for the certificates (default: none are written).")
     ] = None,
@@ -113,7 +117,7 @@ def certify(
 
     file, asked, _ = load(study, allow_code, seconds=seconds)
     question = question_of(asked, robot_for(file, asked, prototype))
-    claims = question.only(margin, at_least)
+    claims = question.only(margin, at_least, at_most)
     folder = output_folder(out, [claim_file(claim.margin) for claim in claims], force)
     with console.progress() as tell:
         proofs = prove_claims(question, claims, {}, {}, tell)
@@ -148,7 +152,7 @@ def trajectory(
     from studies.cli import console
     from studies.cli.run_console import print_timing
     from studies.results import Written, write_setpoints
-    from studies.stages import require_on_cycle, stage, time_cycle
+    from studies.stages import Lasting, require_on_cycle, stage, time_cycle
     from studies.study_file import told_at_key
     from trajectory import LAWS
     from trajectory.drive_files import format_named
@@ -170,7 +174,9 @@ def trajectory(
         asked = asked.model_copy(update={"trajectory": asked.trajectory.model_copy(update={"law": law})})
     with told_at_key(file), console.progress() as tell, stage("cycle", tell):
         timing = time_cycle(asked, robot)
-    require_on_cycle(asked, timing.cycle)
+        if weakness := timing.weakness():
+            tell(Lasting(weakness))
+    require_on_cycle(asked, timing)
     print_timing(timing, write_setpoints(timing, asked, folder) if folder else Written(), json)
 
 
@@ -192,7 +198,7 @@ def report(
     from studies.cli.run_console import print_outcome
     from studies.committed import committed_certificates
     from studies.results import report_names, write_report
-    from studies.stages import certified, run
+    from studies.stages import certified, run, with_unasked
     from studies.study_file import told_at_key
 
     file, asked, drives = load(study, allow_code, seconds=seconds)
@@ -201,7 +207,7 @@ def report(
     folder = output_folder(out or Path("out") / asked.name, names, force)
     known = committed_certificates(asked, file.path.parent, robot)
     with told_at_key(file), console.progress() as tell:
-        outcome = certified(run(asked, robot, tell), known, tell)
+        outcome = certified(with_unasked(run(asked, robot, tell), tell), known, tell)
     print_outcome(outcome, write_report(outcome, folder, f"linkwright report {study}"), json)
 
 

@@ -52,6 +52,12 @@ AtLeastOption = Annotated[
         "else the whole part in reach).",
     ),
 ]
+AtMostOption = Annotated[
+    float | None,
+    typer.Option(
+        "--at-most", metavar="C", help="The same for a margin that is better smaller, such as position_accuracy."
+    ),
+]
 CertifiedOption = Annotated[
     bool,
     typer.Option(
@@ -68,6 +74,7 @@ def map_(
     at: AtOption = None,
     over: OverOption = None,
     at_least: AtLeastOption = None,
+    at_most: AtMostOption = None,
     certified: CertifiedOption = False,
     tolerance: ToleranceOption = 1e-3,
     out: OutOption = None,
@@ -91,7 +98,8 @@ def map_(
     from studies.stages import map_request, run_map
 
     file, asked, _ = load(study, allow_code, seconds=seconds)
-    request = map_request(asked, robot_for(file, asked, prototype), margin, section, at or (), over or (), at_least)
+    robot = robot_for(file, asked, prototype)
+    request = map_request(asked, robot, margin, section, at or (), over or (), at_least, at_most)
     folder = output_folder(out or Path("out") / asked.name, map_names(request), force)
     with console.progress() as tell:
         outcome = run_map(request, tolerance, certified, tell, asked.budget.map)

@@ -26,7 +26,7 @@ def print_map(outcome: MapOutcome, written: Written, as_json: bool) -> None:
             "worst in the plane",
             f"{worst:.6g}" if math.isfinite(worst) else "out of reach or singular",
             "",
-            shown_pose(outcome.found.map.lowest[1]),
+            shown_pose(outcome.found.map.worst[1], outcome.worst_part),
         ),
     ]
     if figures["area"] == 0.0:
@@ -50,7 +50,7 @@ def print_map(outcome: MapOutcome, written: Written, as_json: bool) -> None:
             *([] if proof.complete else [("not complete", "the time was used up")]),
             ("time [s]", f"{proof.seconds:.1f}"),
         ]
-        print_table(f"Proved: {proof.margin} >= {proof.at_least:g}", ("figure", "value"), proved)
+        print_table(f"Proved: {proof.margin} {proof.bound}", ("figure", "value"), proved)
     print_files(written)
 
 

@@ -58,13 +58,14 @@ def proof_data(proof: Proof) -> dict[str, Any]:
     found = proof.certificate
     return {
         "margin": found.margin,
-        "at_least": found.at_least,
+        found.bound.word: found.bound.value,
         "status": found.status,
         "boxes": found.boxes,
         "seconds": proof.seconds,
         "sampled": proof.sampled,
         "gap": proof.gap,
         "counterexample": None if found.counterexample is None else found.counterexample.tolist(),
+        "part": proof.part,
         "within_reach": found.within_reach,
         "boxes_left": len(found.left),
     }

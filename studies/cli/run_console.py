@@ -6,9 +6,9 @@ from typing import Any
 
 from studies.cli.console import files_data, print_files, print_json, print_table
 from studies.cli.proof_console import proof_data
-from studies.report import PROOFS, margin_columns, margin_rows, proof_rows
+from studies.report import FRAME, MEMBERS, PROOFS, frame_rows, margin_columns, margin_rows, member_rows, proof_rows
 from studies.results import Written
-from studies.stages import Outcome, Timing
+from studies.stages import Outcome, Timing, became_worse
 from trajectory.drive_files import FORMATS
 
 
@@ -19,6 +19,10 @@ def print_outcome(outcome: Outcome, written: Written, as_json: bool) -> None:
         return
     sampled = next(iter(outcome.worst.values())).sampled
     print_table(f"Worst over the region ({sampled} poses and descents)", margin_columns(outcome), margin_rows(outcome))
+    if worse := became_worse(outcome):
+        print_table(
+            f"Worse than the {outcome.before}, and not asked about", ("",), [(str(change),) for change in worse]
+        )
     if outcome.proofs:
         print_table("Proofs over the region", PROOFS, proof_rows(outcome.proofs))
     changed = outcome.problem.robot.geometry.as_dict()
@@ -48,6 +52,7 @@ def print_timing(
             {
                 **made_for,
                 **figures,
+                **timing.loads(),
                 "lower_bound_of": "any motion on the cycle's own path, without a jerk limit",
                 "proved_on_the_path": timing.cycle.certificate.margins,
                 "proved_over_limit": timing.cycle.proved,
@@ -79,6 +84,9 @@ def print_timing(
             ("quantity", "peak", "limit", "peak over limit", "proved at most", "joint", "at [s]"),
             piece.timed.verification.rows(),
         )
+    if timing.members:
+        print_table("Members over the whole cycle, the nearest to its limit first", MEMBERS, member_rows(timing))
+    print_table("Reaction on the frame over the whole cycle", FRAME, frame_rows(timing))
     _print_between(timing)
     print_files(written)
 
@@ -96,12 +104,17 @@ def _outcome_data(outcome: Outcome, written: Written) -> dict[str, Any]:
     return {
         "study": outcome.study.name,
         "geometry": outcome.robot.geometry.as_dict(),
-        "worst": {m: {"value": w.value, "pose": w.pose.tolist()} for m, w in outcome.worst.items()},
+        "worst": {
+            m: {"value": w.value, "pose": w.pose.tolist(), "part": outcome.part(m)} for m, w in outcome.worst.items()
+        },
         "prototype": {m: w.value for m, w in outcome.prototype.items()} if outcome.prototype else None,
+        "unasked": {m: {"value": w.value, "pose": w.pose.tolist()} for m, w in outcome.unasked.items()},
+        "unasked_before": {m: w.value for m, w in outcome.unasked_before.items()} if outcome.unasked_before else None,
+        "became_worse": [str(change) for change in became_worse(outcome)],
         "active": outcome.active,
         "region": repr(outcome.region),
         "rounds": [vars(r) for r in outcome.synthesis.rounds] if outcome.synthesis else [],
-        "cycle": outcome.cycle_figures() or None,
+        "cycle": outcome.cycle_figures() | outcome.timing.loads() if outcome.timing else None,
         "cycle_header": dict(outcome.timing.setpoints.header) if outcome.timing else None,
         "prototype_cycle": outcome.prototype_timing.figures() if outcome.prototype_timing else None,
         "proofs": [proof_data(proof) for proof in outcome.proofs],

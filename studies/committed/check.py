@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from design import Problem, Region
-from kinematics import Mechanism
+from kinematics import Bound, Mechanism
 from studies.building import load_study
 from studies.committed.committed_proofs import proof_rows
 from studies.committed.optimum import FILE, Optimum, optimum_of, read_optimum, told
-from studies.stages import GIVEN, ROUNDING, Outcome, Row, agrees, at_least, run, same, same_digest
+from studies.stages import GIVEN, ROUNDING, Outcome, Row, agrees, keeps, run, same, same_digest
 from studies.study_file import Study, TomlFile, changes, cycle_question, design_question, digest_of, told_at_key
 
 _OWN_ROWS = ("asked", "worst_pose", "geometry", "certificate", "made_by.design_digest", "made_by.cycle_digest")
@@ -89,20 +89,25 @@ def _within_bounds(problem: Problem, robot: Mechanism) -> list[Row]:
 
 
 def _requirements(study: Study, outcome: Outcome) -> list[Row]:
-    """Check the requirements over the region and on the cycle, the limits, and the gain over the study's geometry."""
+    """Check the requirements over the region and on the cycle, the limits, and the gain over the study's geometry.
+
+    A study's geometry that breaks a requirement may be better in the objective, so there is no gain to check then.
+    """
     rows = []
     for r in outcome.problem.requirements:
         worst = outcome.worst[r.margin]
-        rows.append(at_least(f"required {r.margin}", r.at_least, worst.value, worst.pose.tolist()))
+        rows.append(keeps(f"required {r.margin}", r.bound, worst.value, worst.pose.tolist(), outcome.part(r.margin)))
         if r.margin in outcome.on_cycle:
-            rows.append(at_least(f"required {r.margin} on the cycle", r.at_least, outcome.on_cycle[r.margin], None))
-    if study.optimise is not None and outcome.prototype is not None:
+            rows.append(keeps(f"required {r.margin} on the cycle", r.bound, outcome.on_cycle[r.margin], None))
+    own = outcome.prototype
+    keeps_all = own is not None and all(r.bound.room(own[r.margin].value) >= 0.0 for r in outcome.problem.requirements)
+    if study.optimise is not None and own is not None and keeps_all:
         name = outcome.problem.objective
         worst = outcome.worst[name]
         rows.append(
-            at_least(
+            keeps(
                 f"{name} is no worse than the study's own geometry",
-                outcome.prototype[name].value,
+                Bound(own[name].value, outcome.robot.margins[name].sense),
                 worst.value,
                 worst.pose,
             )

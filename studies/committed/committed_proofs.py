@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from design import Certificate, certificate_bytes, load_certificate
-from kinematics import LinkwrightError, rounded_down
+from kinematics import Bound, LinkwrightError
 from studies.stages import Claim, Proof, Question, Row, same, same_digest
 
-WORTH = 0.5  # share of the lowest value found; a best bound below this share says too little
+WORTH = 0.5  # share of the worst value found: a best bound below it (or above its inverse) says too little
 FOLDER = "certificates"
 
 
@@ -31,7 +31,7 @@ def proof_entries(proofs: Sequence[Proof], most_boxes: int) -> dict[str, dict[st
 
 
 def _entry(certificate: Certificate, most_boxes: int) -> dict[str, Any]:
-    entry: dict[str, Any] = {"at_least": certificate.at_least, "status": certificate.status}
+    entry: dict[str, Any] = {certificate.bound.word: certificate.bound.value, "status": certificate.status}
     if not _proved(certificate):
         return entry | {"most_boxes": most_boxes}
     digest = hashlib.sha256(certificate_bytes(certificate)).hexdigest()
@@ -79,10 +79,11 @@ def proof_rows(
 
 def _undecided(question: Question, claim: Claim, entry: Mapping[str, Any]) -> list[Row]:
     """Rows of an undecided claim: it claims nothing, so only the record of the attempt is compared."""
-    at_least = claim.at_least or 0.0
-    expected = {"at_least": at_least, "status": "undecided", "most_boxes": question.study.certify.most_boxes}
+    bound = question.bound_of(claim)
+    expected = bound | {"status": "undecided", "most_boxes": question.study.certify.most_boxes}
     rows = _entry_rows(claim.margin, entry, expected)
-    return [*rows, Row(f"{claim.margin} >= {at_least:g} everywhere", "not claimed", "undecided, sampled only", 0.0)]
+    what = f"{claim.margin} {question.required(claim)} everywhere"
+    return [*rows, Row(what, "not claimed", "undecided, sampled only", 0.0)]
 
 
 def _replayed(
@@ -92,19 +93,21 @@ def _replayed(
     certificate = load_certificate(path)
     expected = _entry(certificate, 0) | {"status": "proved", "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
     rows = _entry_rows(claim.margin, entry, expected)
-    what = f"{claim.margin} >= {rounded_down(certificate.at_least, 7)} everywhere"
+    what = f"{claim.margin} {certificate.bound.shown(7)} everywhere"
     try:
         boxes = question.replay(certificate, claim)
     except LinkwrightError as error:
         return [*rows, _off(what, "proved", str(error))]
     if not _proved(certificate):
         return [*rows, _off(what, "proved", certificate.status)]
-    lowest = worst[claim.margin] if claim.margin in worst else question.worst(claim.margin).value
-    rows.append(Row(what, "proved", f"{boxes} boxes replayed", lowest - certificate.at_least))
-    if claim.at_least is None:  # no bound is required, so the best bound must be near the lowest value found
-        says = f"a bound above {WORTH:g} of the lowest found, {lowest:.6g}"
-        found, above = rounded_down(certificate.at_least, 6), certificate.at_least - WORTH * lowest
-        rows.append(Row(f"{claim.margin}, best bound", says, found, above))
+    found = worst[claim.margin] if claim.margin in worst else question.worst(claim.margin).value
+    bound = certificate.bound
+    rows.append(Row(what, "proved", f"{boxes} boxes replayed", bound.room(found)))
+    if claim.required is None:  # no bound is required, so the best bound must be near the worst value found
+        share = WORTH if bound.sense > 0 else 1 / WORTH
+        says = f"a bound {'above' if bound.sense > 0 else 'below'} {share:g} of the worst found, {found:.6g}"
+        room = Bound(share * found, bound.sense).room(bound.value)
+        rows.append(Row(f"{claim.margin}, best bound", says, bound.shown(6), room))
     return rows
 
 

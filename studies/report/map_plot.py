@@ -16,7 +16,7 @@ from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 
 from design import Cylinder, Index, Map, boundary
-from kinematics import Array
+from kinematics import Array, Bound
 from studies.report.plots import STYLE, png
 from studies.stages import MapOutcome, angles_of
 
@@ -59,7 +59,7 @@ def bound_label(outcome: MapOutcome) -> str:
     request = outcome.request
     if request.bound is None:
         return "region in reach"
-    return f"{request.index.name} >= {request.bound:g}, sampled"
+    return f"{request.index.name} {Bound(request.bound, request.index.sense)}, sampled"
 
 
 def draw_contours(figure: Figure, axes: Axes, chart: Map, name: str, scale: Array, bound: float | None) -> None:

@@ -12,7 +12,16 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from kinematics import JointMotion
 from studies.report import plots
-from studies.report.tables import PROOFS, margin_columns, margin_rows, proof_rows
+from studies.report.tables import (
+    FRAME,
+    MEMBERS,
+    PROOFS,
+    frame_rows,
+    margin_columns,
+    margin_rows,
+    member_rows,
+    proof_rows,
+)
 from studies.stages import Outcome, Timing
 from trajectory import motion_of
 
@@ -57,6 +66,10 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
         pictures=[(title, _embedded(png)) for title, png in pictures],
         timings=_timing_rows(outcome),
         peaks=_peak_rows(outcome.timing) if outcome.timing else [],
+        member_columns=MEMBERS,
+        members=member_rows(outcome.timing) if outcome.timing else [],
+        frame_columns=FRAME,
+        frame=frame_rows(outcome.timing) if outcome.timing else [],
         stated=_stated(outcome.timing.setpoints.header) if outcome.timing else [],
         timing=outcome.timing,
     )
@@ -113,7 +126,7 @@ def pictures_of(outcome: Outcome) -> Pictures:
     if outcome.prototype is not None:
         robots = {outcome.before: outcome.problem.robot, **robots}
     pictures = [("Mechanism in its workspace (green edges)", plots.mechanism_picture(robots, outcome.region))]
-    bounds = {r.margin: r.at_least for r in outcome.problem.requirements} | {outcome.problem.objective: 1.0}
+    bounds = {r.margin: r.bound.value for r in outcome.problem.requirements} | {outcome.problem.objective: 1.0}
     mapped = _MAPPED if plots.can_be_mapped(outcome.region, outcome.robot.pose_names) else ()
     for margin in (m for m in mapped if m in outcome.robot.margins):
         sections = {

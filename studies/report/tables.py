@@ -4,9 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from studies.stages import Outcome, Proof, shown_pose
+from studies.stages import Outcome, Proof, Timing, shown_pose
+from trajectory import FRAME_UNITS
 
-PROOFS = ("claim at every pose", "answer", "boxes", "time [s]", "lowest sampled", "sampled - bound", "at pose")
+FRAME = ("on the frame", "peak", "at [s]", "RMS", "peak along x", "along y", "along z")
+MEMBERS = (
+    "member",
+    "tension [N], below 0 compression",
+    "at [s]",
+    "bending [N m]",
+    "torsion [N m]",
+    "joint force [N]",
+    "safety factor",
+    "smallest at [s]",
+)
+PROOFS = ("claim at every pose", "answer", "boxes", "time [s]", "worst sampled", "room to the bound", "at pose")
 
 
 def margin_columns(outcome: Outcome) -> tuple[str, ...]:
@@ -16,18 +28,41 @@ def margin_columns(outcome: Outcome) -> tuple[str, ...]:
 
 def margin_rows(outcome: Outcome) -> list[tuple[str, ...]]:
     """The worst value of each margin, in the columns `margin_columns`."""
-    wanted = {r.margin: f">= {r.at_least:g}" for r in outcome.problem.requirements}
+    wanted = {r.margin: str(r.bound) for r in outcome.problem.requirements}
     if outcome.study.optimise:
-        wanted.setdefault(outcome.problem.objective, "as large as possible")
+        size = "large" if outcome.problem.good(1.0) > 0.0 else "small"
+        wanted.setdefault(outcome.problem.objective, f"as {size} as possible")
+    before = (outcome.prototype or {}) | (outcome.unasked_before or {})
+    units = {name: f" [{margin.unit}]" if margin.unit else "" for name, margin in outcome.robot.margins.items()}
     return [
         (
-            margin,
+            margin + units[margin],
             wanted.get(margin, ""),
-            f"{outcome.prototype[margin].value:.6f}" if outcome.prototype else "",
-            f"{worst.value:.6f}",
-            shown_pose(worst.pose),
+            _figure(before[margin].value) if margin in before else "",
+            _figure(worst.value),
+            shown_pose(worst.pose, outcome.part(margin)),
         )
-        for margin, worst in outcome.worst.items()
+        for margin, worst in (outcome.worst | outcome.unasked).items()
+    ]
+
+
+def _figure(value: float) -> str:
+    return f"{value:.6f}" if 1e-3 <= abs(value) < 1e4 or not value else f"{value:.6g}"
+
+
+def frame_rows(timing: Timing) -> list[tuple[str, ...]]:
+    """What the machine exerts on its frame over the cycle, in the columns `FRAME`."""
+    return [
+        (f"{name} [{FRAME_UNITS[name]}]", *(f"{v:.6g}" for v in (p.peak, p.time, p.rms, *p.axes)))
+        for name, p in timing.frame.items()
+    ]
+
+
+def member_rows(timing: Timing) -> list[tuple[str, ...]]:
+    """What each member bears over the cycle, in the columns `MEMBERS`, the nearest to its limit first."""
+    return [
+        (peak.member, *(f"{value:.4g}" for name, value in peak.as_dict().items() if name != "member"))
+        for peak in sorted(timing.members, key=lambda peak: peak.safety)
     ]
 
 
@@ -39,7 +74,7 @@ def proof_rows(proofs: Sequence[Proof]) -> list[tuple[str, ...]]:
             proof.certificate.status,
             str(proof.certificate.boxes),
             f"{proof.seconds:.2f}",
-            f"{proof.sampled:.6f}",
+            f"{proof.sampled:.6g}",
             f"{proof.gap:.3g}",
             _where(proof),
         )
@@ -50,7 +85,7 @@ def proof_rows(proofs: Sequence[Proof]) -> list[tuple[str, ...]]:
 def _where(proof: Proof) -> str:
     certificate = proof.certificate
     if certificate.counterexample is not None:
-        pose = shown_pose(certificate.counterexample)
+        pose = shown_pose(certificate.counterexample, proof.part)
         return pose if certificate.within_reach else f"out of reach: {pose}"
     if len(certificate.left):
         return f"{len(certificate.left)} undecided boxes, one around {shown_pose(certificate.left[0].mean(axis=0))}"

@@ -10,13 +10,13 @@ import numpy as np
 
 from design import certificate_bytes
 from kinematics import Mechanism, mjcf
-from studies.building import drive_of, home_of, path_of, problem_of
+from studies.building import FRAME_FILE, drive_of, home_of, path_of, problem_of
 from studies.committed import FILE, file_of, optimum_of, proof_files
 from studies.report import html_report, pictures_of
 from studies.results.output_folder import Contents, OutputFolder, Written, require_free
 from studies.stages import Outcome, Proof, Question, Timing, claims_of
 from studies.study_file import Study, TrajectoryTable, digest_of
-from trajectory import write_files
+from trajectory import frame_reaction_text, write_files
 from trajectory.drive_files import drive_files
 
 REPORT, MECHANISM = "report.html", "mechanism.png"
@@ -143,6 +143,7 @@ def write_setpoints(timing: Timing, study: Study, folder: OutputFolder) -> Writt
 def _setpoints(timing: Timing, asked: TrajectoryTable) -> dict[str, str | bytes]:
     drive = drive_of(asked.drive)
     files = drive_files("cycle", timing.setpoints, asked.files, drive)
+    files[FRAME_FILE] = frame_reaction_text(timing.cycle, asked.period)
     if timing.approach is not None:
         files |= drive_files("approach", timing.approach.setpoints, asked.files, drive)
     return files

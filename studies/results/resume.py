@@ -8,7 +8,7 @@ from studies.committed import FILE, Optimum, committed_certificates, read_optimu
 from studies.errors import StudyError
 from studies.results.output_folder import OutputFolder
 from studies.results.outputs import write_optimum
-from studies.stages import Lasting, Outcome, Progress, certified, designed, with_cycle
+from studies.stages import Lasting, Outcome, Progress, certified, designed, with_cycle, with_unasked
 from studies.study_file import Study
 
 
@@ -37,7 +37,7 @@ def run_into(folder: OutputFolder, study: Study, fresh: bool, progress: Progress
             progress(Lasting(f"{folder.path / FILE}: written, before the cycle and the proofs"))
             for path in written.left:
                 progress(Lasting(f"{path}: from an earlier command; kept until this command ends"))
-    return certified(with_cycle(outcome, progress), certificates, progress)
+    return certified(with_unasked(with_cycle(outcome, progress), progress), certificates, progress)
 
 
 def _known_certificates(folder: OutputFolder, study: Study, robot: Mechanism) -> dict[str, Certificate]:

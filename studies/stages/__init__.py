@@ -1,12 +1,13 @@
 """The stages of a study; each takes data and returns data."""
 
-from studies.stages.claim_rows import ROUNDING, Row, agrees, at_least, same, same_digest, shown_pose
+from studies.stages.claim_rows import ROUNDING, Row, agrees, keeps, same, same_digest, shown_pose
 from studies.stages.cycle_stage import Timing, require_on_cycle, time_cycle
 from studies.stages.map_options import MapRequest, angles_of, map_request
 from studies.stages.map_stage import MapOutcome, run_map, unit_of
 from studies.stages.pipeline import GIVEN, Outcome, certified, designed, run, with_cycle
 from studies.stages.proofs import Claim, Proof, Question, claims_of, prove_claims, question_of
 from studies.stages.timed_stage import Lasting, Progress, stage
+from studies.stages.unasked import became_worse, with_unasked
 
 __all__ = [
     "GIVEN",
@@ -23,10 +24,11 @@ __all__ = [
     "Timing",
     "agrees",
     "angles_of",
-    "at_least",
+    "became_worse",
     "certified",
     "claims_of",
     "designed",
+    "keeps",
     "map_request",
     "prove_claims",
     "question_of",
@@ -40,4 +42,5 @@ __all__ = [
     "time_cycle",
     "unit_of",
     "with_cycle",
+    "with_unasked",
 ]

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
+from kinematics import Bound
+
 AGREE = 1e-6  # relative: how much another machine's rounding may change a figure
 ROUNDING = 1e-9  # m or rad: how much rounding may change a pose in the file, or a sum
 
@@ -47,12 +49,13 @@ def agrees(what: str, claimed: object, found: float) -> Row:
     return Row(what, f"{claimed:.9g}", f"{found:.9g}", AGREE * max(abs(claimed), ROUNDING) - off)
 
 
-def at_least(what: str, bound: float, found: float, pose: Any) -> Row:
-    """Expect a value that is not below a bound; `pose` is where it was found, or None."""
-    where = "" if pose is None else shown_pose(pose)
-    return Row(what, f">= {bound:g}", f"{found:.9g}", found - bound, where)
+def keeps(what: str, bound: Bound, found: float, pose: Any, part: str | None = None) -> Row:
+    """Expect a value that keeps a bound; `pose` is where it was found, or None, and `part` which part it is."""
+    where = "" if pose is None else shown_pose(pose, part)
+    return Row(what, str(bound), f"{found:.9g}", bound.room(found), where)
 
 
-def shown_pose(pose: Any) -> str:
-    """A pose for people: short, and without negative zeros."""
-    return f"({', '.join(f'{round(float(v), 6) + 0.0:.4g}' for v in pose)})"
+def shown_pose(pose: Any, part: str | None = None) -> str:
+    """A pose for people: short, and without negative zeros; with the part of the robot that is meant there."""
+    shown = f"({', '.join(f'{round(float(v), 6) + 0.0:.4g}' for v in pose)})"
+    return f"{shown}, {part}" if part else shown

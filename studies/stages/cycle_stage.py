@@ -10,11 +10,25 @@ from typing import Any
 import numpy as np
 
 from design import Problem, Region
-from kinematics import InvalidField, LinkwrightError, Mechanism, to_actuators
+from kinematics import Bound, InvalidField, LinkwrightError, Mechanism, to_actuators
 from studies.building import approach_limits, home_of, leaving, limits_of, path_of, problem_of, region_of, timing_of
 from studies.errors import ApproachFailed, Failed, RequirementFailed
 from studies.study_file import Study
-from trajectory import Cycle, Limits, Move, Path, Setpoints, Way, cycle_setpoints, lower_bound, there_and_back
+from trajectory import (
+    Cycle,
+    FramePeak,
+    Limits,
+    MemberPeak,
+    Move,
+    Path,
+    Setpoints,
+    Way,
+    cycle_setpoints,
+    frame_peaks,
+    lower_bound,
+    member_peaks,
+    there_and_back,
+)
 
 _MOST_SETPOINTS = 1_000_000
 
@@ -27,6 +41,8 @@ class Timing:
         cycle: the way there and the way back, timed and verified.
         setpoints: the cycle's set-points, stretched to whole periods and verified again.
         approach: the move from home; None if the study asks for none.
+        frame: the force and the moment that the machine exerts on its frame, by name.
+        members: the largest loads of each member, and its smallest safety factor.
         lower_bound: time that every motion on this path needs for the way there, even without a jerk limit [s].
         seconds: wall-clock time of timing and verification.
     """
@@ -34,6 +50,8 @@ class Timing:
     cycle: Cycle
     setpoints: Setpoints
     approach: Move | None
+    frame: dict[str, FramePeak]
+    members: tuple[MemberPeak, ...]
     lower_bound: float
     seconds: float
 
@@ -64,30 +82,57 @@ class Timing:
             **({"limits_not_kept": list(self.cycle.not_kept)} if self.cycle.not_kept else {}),
         }
 
+    def loads(self) -> dict[str, Any]:
+        """What the machine bears and what its frame feels, as plain data; no claim of the optimum."""
+        frame = {name: peak.as_dict() for name, peak in self.frame.items()}
+        return {"frame_reaction": frame, "members": [member.as_dict() for member in self.members]}
 
-def margins_on(problem: Problem, robot: Mechanism, ways: Sequence[Way], grid: int) -> dict[str, float]:
-    """The worst value of each requirement's margin on the ways of a cycle; NaN counts as -inf."""
+    @property
+    def weakest(self) -> MemberPeak | None:
+        """The member nearest its limit; None if no member's strength is known."""
+        return min(self.members, key=lambda member: member.safety, default=None)
+
+    def weakness(self) -> str:
+        """What to say of a member that the cycle would break; empty if there is none."""
+        if (worst := self.weakest) is None or worst.safety >= 1.0:
+            return ""
+        return (
+            f"this cycle would break {worst.member}: its safety factor falls to {worst.safety:.3g}, below 1, "
+            f"at {worst.safety_at:.4g} s; a requirement on the margin strength would refuse such a cycle"
+        )
+
+
+def margins_on(
+    problem: Problem, robot: Mechanism, ways: Sequence[Way], grid: int, weakest: MemberPeak | None = None
+) -> dict[str, float]:
+    """The worst value of each requirement's margin on the ways of a cycle; NaN counts as infinitely bad.
+
+    A safety factor of the members is also that of the `weakest` member in the motion, which has its own loads.
+    """
     poses = np.concatenate([way.evaluate(np.linspace(0.0, way.length, grid + 1), 0)[0] for way in ways])
     found = {}
     for requirement in problem.requirements:
         values = robot.margin(requirement.margin, poses, problem.fvi_bounds, problem.characteristic_length)
-        found[requirement.margin] = float(np.where(np.isnan(values), -np.inf, values).min())
+        sense = requirement.bound.sense
+        found[requirement.margin] = sense * float(np.where(np.isnan(values), -np.inf, sense * values).min())
+        if weakest is not None and robot.margins[requirement.margin].of_members:
+            found[requirement.margin] = min(found[requirement.margin], weakest.safety)
     return found
 
 
-def require_on_cycle(study: Study, cycle: Cycle) -> None:
+def require_on_cycle(study: Study, timing: Timing) -> None:
     """Check the study's requirements on its cycle.
 
     Raises:
         RequirementFailed: with each one that fails there.
     """
     assert study.trajectory is not None
-    problem = problem_of(study)
-    found = margins_on(problem, cycle.robot, cycle.ways, study.trajectory.grid)
+    problem, cycle = problem_of(study), timing.cycle
+    found = margins_on(problem, cycle.robot, cycle.ways, study.trajectory.grid, timing.weakest)
     failed = [
-        Failed(f"{r.margin} on the cycle", r.at_least, found[r.margin], ())
+        Failed(f"{r.margin} on the cycle", r.bound, found[r.margin], ())
         for r in problem.requirements
-        if not found[r.margin] >= r.at_least
+        if not r.bound.room(found[r.margin]) >= 0.0
     ]
     if failed:
         raise RequirementFailed(failed)
@@ -113,7 +158,7 @@ def time_cycle(study: Study, robot: Mechanism) -> Timing:
     _require_few(sum(piece.duration for piece in cycle.pieces), asked.period)
     points = cycle_setpoints(cycle, asked.period, robot.actuator_units)
     bound = sum(lower_bound(robot, piece.path, limits, payload) for piece in cycle.there)
-    return Timing(cycle, points, approach, bound, seconds)
+    return Timing(cycle, points, approach, frame_peaks(cycle), member_peaks(cycle), bound, seconds)
 
 
 def _approach(study: Study, robot: Mechanism, path: Path, limits: Limits) -> Move | None:
@@ -163,4 +208,4 @@ def _require_inside(region: Region, cycle: Cycle) -> None:
     out = [found for way in cycle.ways if (found := leaving(region, way, cycle.robot.pose_names))]
     if out:
         room = "distance inside the region's boundary on the cycle [m or rad]"
-        raise RequirementFailed([Failed(room, 0.0, found.room, tuple(found.pose.tolist())) for found in out])
+        raise RequirementFailed([Failed(room, Bound(0.0), found.room, tuple(found.pose.tolist())) for found in out])

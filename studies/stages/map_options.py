@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from design import Box, Cylinder, Index, InvalidRegion, InvalidSection, Region, Section, index_of
-from kinematics import FviBounds, LinkwrightError, Mechanism
+from kinematics import FviBounds, Mechanism
 from studies.building import problem_of, region_of
+from studies.stages.bound_option import InvalidOption, bound_option
 from studies.study_file import LARGEST, Study
 from trajectory import in_si
 
 DEFAULT = "fvi"
 _FVI_BOUND = 1.0  # at 1 the robot just gives the wanted speed and force
-
-
-class InvalidOption(LinkwrightError):
-    """An option of the command line has a value that cannot be used."""
-
-    def __init__(self, option: str, found: object, expected: str) -> None:
-        self.option, self.found, self.expected = option, found, expected
-        super().__init__(f"{option}: found {found}; expected {expected}")
 
 
 @dataclass(frozen=True)
@@ -30,7 +22,7 @@ class MapRequest:
 
     Attributes:
         robot, index, section: the robot, its index, and the plane with its other coordinates.
-        bound: the index should be at least this (at most, for the condition number); None takes all in reach.
+        bound: the index should be at least this, or at most if smaller is better; None takes all in reach.
         fvi_bounds, characteristic_length: what the indices are measured with.
     """
 
@@ -55,6 +47,7 @@ def map_request(
     at: Sequence[str] = (),
     over: Sequence[str] = (),
     at_least: float | None = None,
+    at_most: float | None = None,
 ) -> MapRequest:
     """Check the options against the study's robot and region.
 
@@ -63,7 +56,7 @@ def map_request(
         section: two coordinates, such as "y,z"; by default the region's first two free ones.
         at: each "name=value" or "name=value,value,..."; a name may end in `_deg` or `_mm`.
         over: each "name=low:high", which replaces the region's own interval; "radius=0.7" for a cylinder.
-        at_least: the bound; by default the study's requirement of this margin, else 1 for the FVI.
+        at_least, at_most: the bound; by default the study's requirement of this margin, else 1 for the FVI.
 
     Raises:
         InvalidOption: names the option, what was found and what would be right.
@@ -71,8 +64,7 @@ def map_request(
     name = margin or DEFAULT
     if name not in robot.margins:
         raise InvalidOption("--margin", name, f"one of {', '.join(robot.margins)}")
-    if at_least is not None and not math.isfinite(at_least):
-        raise InvalidOption("--at-least", at_least, "a finite number")
+    given = bound_option(robot.margins[name], at_least, at_most)
     region = _region(study, robot, over)
     values = _assignments("--at", at, robot.pose_names, angles_of(robot), ",")
     free = [n for n in robot.pose_names if region.is_free(n) and n not in values]
@@ -84,8 +76,9 @@ def map_request(
         plane.check(robot.pose_names)
     except InvalidSection as error:
         raise InvalidOption("--section" if error.key == "axes" else "--at", error.found, error.expected) from error
-    bounds, problem = {r.margin: r.at_least for r in study.requirement}, problem_of(study)
-    wanted = bounds.get(name, _FVI_BOUND if name == "fvi" else None) if at_least is None else at_least
+    problem = problem_of(study)
+    bounds = {r.margin: r.bound.value for r in problem.requirements}
+    wanted = bounds.get(name, _FVI_BOUND if name == "fvi" else None) if given is None else given.value
     index = index_of(robot, name, problem.fvi_bounds, problem.characteristic_length)
     return MapRequest(robot, index, plane, wanted, problem.fvi_bounds, problem.characteristic_length)
 

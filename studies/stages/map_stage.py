@@ -11,7 +11,9 @@ from typing import Any
 import numpy as np
 
 from design import Box, CertifiedRegion, Cylinder, LevelSet, Region, certified_cells, certified_cylinder, level_set
-from studies.stages.map_options import InvalidOption, MapRequest, angles_of
+from kinematics import Bound
+from studies.stages.bound_option import InvalidOption
+from studies.stages.map_options import MapRequest, angles_of
 from studies.stages.timed_stage import Progress, stage
 
 
@@ -75,10 +77,18 @@ class MapOutcome:
             "nodes": list(self.found.map.values.shape[::-1]),
         }
 
+    @property
+    def worst_part(self) -> str | None:
+        """The part of the robot that has the worst value in the plane, such as "limb 1"; None if there is no one."""
+        r = self.request
+        if r.index.name not in r.robot.margins:
+            return None
+        return r.robot.margin_place(r.index.name, self.found.map.worst[1], r.fvi_bounds, r.characteristic_length)
+
     def figures(self) -> dict[str, Any]:
         """The numbers, as plain data; `moved` has the change of each in the last refinement."""
         now, before = self.found.figures, self.found.coarser
-        value, pose = self.found.map.lowest
+        value, pose = self.found.map.worst
         data: dict[str, Any] = {
             "area": now.area,
             "mean": now.mean,
@@ -89,6 +99,7 @@ class MapOutcome:
             "moved": {name: abs(getattr(now, name) - getattr(before, name)) for name in vars(now)},
             "worst": value,
             "worst_pose": pose.tolist(),
+            "worst_part": self.worst_part,
         }
         if (proof := self.certified) is not None:
             data["certified"] = {
@@ -139,13 +150,14 @@ def _proof(request: MapRequest, seconds: float) -> Callable[[], CertifiedRegion]
     """The search for the certified region. The options are checked here, before anything runs."""
     r = request
     if r.bound is None:
-        raise InvalidOption("--certified", f"no bound of {r.index.name}", "--at-least C")
+        word = r.robot.margins[r.index.name].word.replace("_", "-")
+        raise InvalidOption("--certified", f"no bound of {r.index.name}", f"--{word} C")
     region, bound, name = _fixed(r), r.bound, r.index.name
     measured: dict[str, Any] = {"bounds": r.fvi_bounds, "characteristic_length": r.characteristic_length}
-    measured["seconds"] = seconds
+    measured |= {"seconds": seconds, Bound(bound, r.index.sense).word: bound}
     if isinstance(region, Cylinder):
-        return lambda: certified_cylinder(r.robot, region, name, at_least=bound, **measured)
-    return lambda: certified_cells(r.robot, region, r.section.axes, name, at_least=bound, **measured)
+        return lambda: certified_cylinder(r.robot, region, name, **measured)
+    return lambda: certified_cells(r.robot, region, r.section.axes, name, **measured)
 
 
 def _fixed(request: MapRequest) -> Region:

@@ -33,6 +33,7 @@ class Outcome:
         on_cycle: the worst value of each requirement's margin on the cycle; empty without a cycle.
         timing: the timed cycle; None if the study asks for none.
         prototype_timing: the cycle of the study's own geometry, to compare with; None if there is none.
+        unasked, unasked_before: as `worst` and `prototype`, of the margins that the study did not ask about.
         proofs: the answers to the claims; empty before that stage.
     """
 
@@ -47,6 +48,8 @@ class Outcome:
     on_cycle: dict[str, float] = field(default_factory=dict)
     timing: Timing | None = None
     prototype_timing: Timing | None = None
+    unasked: dict[str, WorstPoses] = field(default_factory=dict)
+    unasked_before: dict[str, WorstPoses] | None = None
     proofs: tuple[Proof, ...] = ()
 
     @property
@@ -58,6 +61,10 @@ class Outcome:
     def question(self) -> Question:
         """What should be proved of this robot."""
         return Question(self.study, self.problem, self.region, self.robot)
+
+    def part(self, margin: str) -> str | None:
+        """The part of the robot that has the worst value of a margin, such as "limb 1"."""
+        return self.question.part(margin, (self.worst | self.unasked)[margin].pose)
 
     @property
     def active(self) -> list[str]:
@@ -81,15 +88,17 @@ class Outcome:
         failed = []
         for requirement in self.problem.requirements:
             worst = self.worst[requirement.margin]
-            if not worst.value >= requirement.at_least:
-                failed.append(Failed(requirement.margin, requirement.at_least, worst.value, tuple(worst.pose.tolist())))
-            on_path = self.on_cycle.get(requirement.margin, math.inf)
-            if not on_path >= requirement.at_least:
-                failed.append(Failed(f"{requirement.margin} on the cycle", requirement.at_least, on_path, ()))
+            bound = requirement.bound
+            if not bound.room(worst.value) >= 0.0:
+                name, at, part = requirement.margin, tuple(worst.pose.tolist()), self.part(requirement.margin)
+                failed.append(Failed(name, bound, worst.value, at, part=part))
+            on_path = self.on_cycle.get(requirement.margin, bound.value)
+            if not bound.room(on_path) >= 0.0:
+                failed.append(Failed(f"{requirement.margin} on the cycle", bound, on_path, ()))
         for proof in self.proofs:
             if (pose := proof.certificate.counterexample) is not None:
-                name, bound = proof.certificate.margin, proof.certificate.at_least
-                failed.append(Failed(name, bound, proof.sampled, tuple(pose.tolist())))
+                name, bound = proof.certificate.margin, proof.certificate.bound
+                failed.append(Failed(name, bound, proof.sampled, tuple(pose.tolist()), part=proof.part))
         if failed:
             raise RequirementFailed(failed)
 
@@ -140,7 +149,10 @@ def with_cycle(outcome: Outcome, progress: Progress, compare: bool = True) -> Ou
         return outcome
     with stage("cycle", progress):
         timing = time_cycle(study, outcome.robot)
-    on_cycle = margins_on(outcome.problem, outcome.robot, timing.cycle.ways, study.trajectory.grid)
+    grid = study.trajectory.grid
+    on_cycle = margins_on(outcome.problem, outcome.robot, timing.cycle.ways, grid, timing.weakest)
+    if weakness := timing.weakness():
+        progress(Lasting(weakness))
     if outcome.prototype is not None and compare:
         try:
             with stage("cycle of the study's own geometry", progress):

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from design import Budget, Certificate, Problem, Region, WorstPoses, best_bound, certify, replay, worst_poses
-from kinematics import InvalidValue, LinkwrightError, Mechanism, rounded_down
+from kinematics import Array, Bound, InvalidValue, LinkwrightError, Mechanism
 from studies.building import problem_of, region_of
+from studies.stages.bound_option import bound_option
 from studies.stages.timed_stage import Progress
 from studies.study_file import Study
 
@@ -19,10 +20,10 @@ _FEW = 4  # boxes; enough to run every compiled function of a proof once
 
 @dataclass(frozen=True)
 class Claim:
-    """The margin is at least `at_least` everywhere. With `best`, also find the best bound that can be proved."""
+    """The margin keeps `required` everywhere. With `best`, also find the best bound that can be proved."""
 
     margin: str
-    at_least: float | None
+    required: Bound | None
     best: bool
 
 
@@ -32,23 +33,25 @@ class Proof:
 
     Attributes:
         certificate: the claim, its answer and the boxes behind it.
-        sampled: the lowest value that a search found; the true worst value is between the proved bound and this.
+        sampled: the worst value that a search found; the true worst value is between the proved bound and this.
         seconds: wall-clock time that the answer took.
+        part: the part of the robot that has the lowest value, such as "limb 1"; None if there is no single one.
     """
 
     certificate: Certificate
     sampled: float
     seconds: float
+    part: str | None
 
     @property
     def claim(self) -> str:
         """The claim in words."""
-        return f"{self.certificate.margin} >= {rounded_down(self.certificate.at_least, 7)}"
+        return f"{self.certificate.margin} {self.certificate.bound.shown(7)}"
 
     @property
     def gap(self) -> float:
-        """The lowest sampled value minus the bound, in the margin's unit; negative if the claim is refuted."""
-        return self.sampled - self.certificate.at_least
+        """By how much the worst sampled value keeps the bound, in the margin's unit; negative if it is refuted."""
+        return float(self.certificate.bound.room(self.sampled))
 
 
 @dataclass(frozen=True)
@@ -69,31 +72,36 @@ class Question:
         """All claims of the study."""
         return claims_of(self.study, self.problem)
 
-    def only(self, margin: str | None, at_least: float | None) -> tuple[Claim, ...]:
+    def only(self, margin: str | None, at_least: float | None, at_most: float | None = None) -> tuple[Claim, ...]:
         """The study's claims, or only the one about `margin`.
 
         Raises:
             InvalidValue: the mechanism has no such margin, the bound has no margin, or the bound is impossible.
+            InvalidOption: the bound is not finite, or the wrong option for the margin.
         """
         if margin is None:
-            if at_least is not None:
-                raise InvalidValue("--at-least", at_least, "--margin NAME with it")
+            for option, value in (("--at-least", at_least), ("--at-most", at_most)):
+                if value is not None:
+                    raise InvalidValue(option, value, "--margin NAME with it")
             return self.claims()
         if margin not in self.robot.margins:
             raise InvalidValue("--margin", margin, f"one of {', '.join(self.robot.margins)}")
-        if at_least is not None:
-            if not math.isfinite(at_least):
-                raise InvalidValue("--at-least", at_least, "a finite number")
-            if margin == "reach" and at_least < 0.0:
-                raise InvalidValue(
-                    "--at-least", at_least, "0 m or more for reach, as every claim includes that the pose is in reach"
-                )
-            return (Claim(margin, at_least, best=False),)
-        return (_claim(self.problem, margin),)
+        bound = bound_option(self.robot.margins[margin], at_least, at_most)
+        if bound is None:
+            return (_claim(self.problem, margin),)
+        if margin == "reach" and bound.value < 0.0:
+            raise InvalidValue(
+                "--at-least", bound.value, "0 m or more for reach, as every claim includes that the pose is in reach"
+            )
+        return (Claim(margin, bound, best=False),)
 
     def worst(self, margin: str) -> WorstPoses:
         """The worst poses that a dense search finds."""
         return worst_poses(self.robot, self.region, margin, about=self.study.dense_sample, **self.measure)
+
+    def part(self, margin: str, pose: Array) -> str | None:
+        """The part of the robot that has the lowest value of a margin at a pose (n,), such as "limb 1"."""
+        return self.robot.margin_place(margin, pose, *self.measure.values())
 
     def prove(
         self,
@@ -121,20 +129,32 @@ class Question:
             certificate = self._certificate(claim, worst.value, progress, seconds)
         seconds, sampled = time.perf_counter() - started, worst.value
         if certificate.counterexample is not None:
+            sense = certificate.bound.sense
             found = float(self.robot.margin(claim.margin, certificate.counterexample, *self.measure.values()))
-            sampled = -math.inf if math.isnan(found) else min(found, sampled)
-        proof = Proof(certificate, sampled, seconds)
+            sampled = -sense * math.inf if math.isnan(found) else sense * min(sense * found, sense * sampled)
+        pose = worst.pose if certificate.counterexample is None else certificate.counterexample
+        proof = Proof(certificate, sampled, seconds, self.part(claim.margin, pose))
         progress(f"{certificate.status} {proof.claim}: {certificate.boxes} boxes, {seconds:.1f} s")
         return proof
 
     def compile(self, claim: Claim) -> None:
         """Bound a few boxes, so that the functions of a proof are compiled, or read from the disk."""
-        certify(self.robot, self.region, claim.margin, at_least=claim.at_least or 0.0, most_boxes=_FEW, **self.measure)
+        certify(self.robot, self.region, claim.margin, **self.bound_of(claim), most_boxes=_FEW, **self.measure)
 
     def replay(self, certificate: Certificate, claim: Claim) -> int:
         """The number of boxes that a certificate's replay bounds. Another claim's certificate raises an error."""
-        asked: dict[str, Any] = {"region": self.region, "margin": claim.margin, "at_least": claim.at_least}
-        return replay(certificate, self.robot, **asked, **self.measure)
+        asked: dict[str, Any] = {"region": self.region, "margin": claim.margin}
+        bound = self.bound_of(claim) if claim.required else {}
+        return replay(certificate, self.robot, **asked, **bound, **self.measure)
+
+    def required(self, claim: Claim) -> Bound:
+        """The required bound of a claim, else the weakest one."""
+        return claim.required or Bound.weakest(self.robot.margins[claim.margin].sense)
+
+    def bound_of(self, claim: Claim) -> dict[str, Any]:
+        """The same as an argument of `certify`."""
+        bound = self.required(claim)
+        return {bound.word: bound.value}
 
     def _stands(self, known: Certificate, claim: Claim) -> bool:
         try:
@@ -147,19 +167,20 @@ class Question:
         """Search for a certificate of the claim.
 
         A proved required bound within the tolerance of the worst value also counts as the best. If no best bound is
-        proved, 0 is tried. The search for a best bound gets half of the time if the required bound may still follow.
+        proved, the weakest bound is tried. The search for a best bound gets half of the time if the required bound may
+        still follow.
         """
         asked, budget = self.study.certify, Budget(seconds)
         search: dict[str, Any] = self.measure | {"most_boxes": asked.most_boxes, "progress": progress}
-        required, tolerance = claim.at_least, asked.tolerance * abs(worst)
-        near = required is not None and worst - required <= tolerance
+        required, tolerance = claim.required, asked.tolerance * abs(worst)
+        near = required is not None and required.room(worst) <= tolerance
         if claim.best and not near and 0.0 < tolerance < math.inf:
             share = budget.share(1 if required is None else 2).seconds
             best = best_bound(self.robot, self.region, claim.margin, tolerance, seconds=share, **search)
-            if best is not None and (required is None or best.certificate.at_least >= required):
+            if best is not None and (required is None or required.room(best.certificate.bound.value) >= 0.0):
                 return best.certificate
         left = budget.share(1).seconds
-        return certify(self.robot, self.region, claim.margin, at_least=required or 0.0, seconds=left, **search)
+        return certify(self.robot, self.region, claim.margin, **self.bound_of(claim), seconds=left, **search)
 
 
 def claims_of(study: Study, problem: Problem) -> tuple[Claim, ...]:
@@ -171,8 +192,9 @@ def claims_of(study: Study, problem: Problem) -> tuple[Claim, ...]:
 
 
 def _claim(problem: Problem, margin: str) -> Claim:
-    bounds = [r.at_least for r in problem.requirements if r.margin == margin]
-    return Claim(margin, max(bounds, default=None), best=not bounds or margin == problem.objective)
+    bounds = [r.bound for r in problem.requirements if r.margin == margin]
+    strictest = max(bounds, key=lambda bound: bound.sense * bound.value, default=None)
+    return Claim(margin, strictest, best=not bounds or margin == problem.objective)
 
 
 def question_of(study: Study, robot: Mechanism) -> Question:

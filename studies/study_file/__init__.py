@@ -5,7 +5,7 @@ from studies.study_file.conversion import LARGEST, Conversion, Finding
 from studies.study_file.keys import Key, Table
 from studies.study_file.limits_table import LimitsTable
 from studies.study_file.locate import FILE, FOLDER, study_names, study_path
-from studies.study_file.machine_tables import InertiaTable, MaterialTable, StructureTable
+from studies.study_file.machine_tables import InertiaTable, MaterialTable, StructureTable, SurroundingsTable
 from studies.study_file.path_tables import CycleTable, WaypointPathTable, WaypointTable, adept_cycle
 from studies.study_file.questions import changes, cycle_question, design_question, digest_of
 from studies.study_file.study import (
@@ -48,6 +48,7 @@ __all__ = [
     "StructureTable",
     "Study",
     "SumTable",
+    "SurroundingsTable",
     "Table",
     "TomlFile",
     "TrajectoryTable",

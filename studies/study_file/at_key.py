@@ -99,7 +99,7 @@ def _required_at(file: TomlFile, margin: str) -> str:
     number = next((i for i, row in enumerate(rows) if row.get("margin") == name), None)
     if number is None:
         return ""
-    key: KeyPath = ("requirement", number, "at_least")
+    key: KeyPath = ("requirement", number, "at_most" if "at_most" in rows[number] else "at_least")
     return f"{file.path}:{file.line(key)}: {dotted(key)}"
 
 

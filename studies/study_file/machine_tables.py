@@ -1,12 +1,12 @@
-"""The machine's masses, drives and joint ranges. A key that is left out takes the mechanism's own value."""
+"""The machine's masses, drives, joint ranges and surroundings. An omitted key takes the mechanism's own value."""
 
 from typing import Annotated, Any
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from kinematics import Load
 from studies.study_file.keys import Key
-from studies.study_file.table import NotNegative, Positive, StudyTable, gathered, table_of
+from studies.study_file.table import Name, NotNegative, Positive, StudyTable, gathered, table_of
 from studies.study_file.units import Dimension
 
 Numbers = float | tuple[float, ...]
@@ -29,6 +29,10 @@ class DriveTrainTable(StudyTable):
     """The friction at the joint for each unit of speed. The law `toppra` does not allow it."""
     stiffness: Annotated[Numbers | None, Key("a number > 0, or one a joint (N m/rad, or N/m)")] = None
     """How hard gear and servo loop resist at the joint."""
+    encoder_resolution: Annotated[Numbers | None, Key("a number >= 0, or one a joint (rad or m)")] = None
+    """One step of the encoder, at the actuator. The motor may be off by so much to either side."""
+    backlash: Annotated[Numbers | None, Key("a number >= 0, or one a joint (rad or m)")] = None
+    """How far the actuator moves freely, from one flank to the other."""
 
 
 class MaterialTable(StudyTable):
@@ -81,3 +85,63 @@ class InertiaTable(StudyTable):
     @classmethod
     def _gather_masses(cls, data: Any) -> Any:
         return gathered(cls, data, "masses")
+
+
+_PLACE = tuple[float, float, float]
+
+
+class ObstacleTable(StudyTable):
+    """A box along the axes of the base."""
+
+    name: Annotated[Name, Key("a name, different from those of the other obstacles")]
+    """What messages call it, such as "conveyor"."""
+    low: Annotated[_PLACE, Key("three coordinates x, y, z", Dimension.LENGTH, place=True)]
+    """The corner with the lowest coordinates [m]."""
+    high: Annotated[_PLACE, Key("three coordinates x, y, z, each above that of low", Dimension.LENGTH, place=True)]
+    """The opposite corner [m]."""
+    inside: Annotated[bool, Key("true or false")] = False
+    """Whether the robot must stay inside the box, as in a frame. Otherwise it must stay outside."""
+
+    @field_validator("high")
+    @classmethod
+    def _has_size(cls, high: _PLACE, info: ValidationInfo) -> _PLACE:
+        low = info.data.get("low")
+        if low is not None and not all(a < b for a, b in zip(low, high, strict=True)):
+            raise ValueError("no size")
+        return high
+
+
+class PayloadHullTable(StudyTable):
+    """A round body that the tool holds, along its z axis."""
+
+    radius: Annotated[Positive, Key("a length > 0", Dimension.LENGTH)]
+    """Its radius [m]."""
+    low: Annotated[float, Key("a finite number", Dimension.LENGTH, place=True)]
+    """Where it starts, from the tool point along the tool's z axis [m]."""
+    high: Annotated[float, Key("a number above low", Dimension.LENGTH, place=True)]
+    """Where it ends [m]."""
+
+    @field_validator("high")
+    @classmethod
+    def _has_height(cls, high: float, info: ValidationInfo) -> float:
+        if high <= info.data.get("low", high - 1.0):
+            raise ValueError("no height")
+        return high
+
+
+class SurroundingsTable(StudyTable):
+    """What the margin `clearance` looks at besides the robot itself."""
+
+    floor: Annotated[float | None, Key("a height below the base", Dimension.LENGTH, place=True)] = None
+    """The height that everything that moves stays above [m]. None for no floor."""
+    obstacle: Annotated[tuple[ObstacleTable, ...], table_of(ObstacleTable, rows=True)] = ()
+    """Boxes, such as a conveyor or a frame."""
+    payload_hull: Annotated[PayloadHullTable | None, table_of(PayloadHullTable)] = None
+    """The room that the payload takes. None for a payload without size."""
+
+    @field_validator("obstacle")
+    @classmethod
+    def _names_differ(cls, rows: tuple[ObstacleTable, ...]) -> tuple[ObstacleTable, ...]:
+        if len({row.name for row in rows}) < len(rows):
+            raise ValueError("two obstacles have one name")
+        return rows

@@ -16,10 +16,27 @@ if TYPE_CHECKING:
     from studies.study_file.study import Study
 
 DESIGN = frozenset(
-    ("mechanism", "code", "geometry", "ranges", "region", "home", "fvi", "optimise", "dense_sample", "requirement")
+    (
+        "mechanism",
+        "code",
+        "geometry",
+        "ranges",
+        "surroundings",
+        "region",
+        "home",
+        "fvi",
+        "optimise",
+        "dense_sample",
+        "requirement",
+    )
 )
 CYCLE = frozenset(("inertia", "material", "structure", "trajectory"))
-_OF_RECORDS = {"inertia": ("inertia",), "structure": ("material", "structure"), "load": ("load",)}  # their tables
+_OF_RECORDS = {  # their tables
+    "inertia": ("inertia",),
+    "structure": ("material", "structure"),
+    "load": ("load",),
+    "surroundings": ("surroundings",),
+}
 _NO_MATTER = {"trajectory": {"files": True, "drive": True, "path": {"file": True}}}  # they do not change the motion
 _GATHERED = ("coordinates", "masses", "materials")  # fields of the models that no file has
 _FEW = 12  # up to so many waypoints are written one by one

@@ -7,7 +7,14 @@ from pydantic import Field, SkipValidation, model_validator
 from design import DENSE, MOST_BOXES, STARTS
 from kinematics import Mechanism
 from studies.study_file.keys import Key, Table
-from studies.study_file.machine_tables import InertiaTable, LoadTable, MaterialTable, Ranges, StructureTable
+from studies.study_file.machine_tables import (
+    InertiaTable,
+    LoadTable,
+    MaterialTable,
+    Ranges,
+    StructureTable,
+    SurroundingsTable,
+)
 from studies.study_file.questions import digest_of, plain
 from studies.study_file.table import Entry, Interval, Name, Positive, StudyTable, gathered, table_of
 from studies.study_file.trajectory_tables import TrajectoryTable
@@ -103,8 +110,10 @@ class RequirementTable(StudyTable):
 
     margin: Annotated[str, Key("one of")]
     """The margin."""
-    at_least: Annotated[float, Key("a finite number; for the margin reach, 0 or more")]
+    at_least: Annotated[float | None, Key("a finite number; for the margin reach, 0 or more")] = None
     """The lowest value that is allowed, at every pose of the region and on the cycle."""
+    at_most: Annotated[float | None, Key("a finite number")] = None
+    """The highest value that is allowed, in place of `at_least`, of a margin that is better smaller."""
 
 
 class CertifyTable(StudyTable):
@@ -162,6 +171,8 @@ class Study(StudyTable):
     """The load that `natural_frequency` and `strength` are for."""
     ranges: Annotated[Ranges, Field(default_factory=dict), Table({})]
     """The joint ranges, where they differ from the prototype's."""
+    surroundings: Annotated[SurroundingsTable, table_of(SurroundingsTable)] = SurroundingsTable()
+    """What the robot must not touch besides itself."""
     region: Annotated[Annotated[BoxTable | CylinderTable, Field(discriminator="kind")], Table({})]
     """The workspace: the requirements must hold at every pose in it."""
     home: Annotated[HomeTable | None, table_of(HomeTable)] = None

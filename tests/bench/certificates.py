@@ -59,7 +59,7 @@ class Cost:
     def row(self) -> str:
         """As Markdown, under `COLUMNS`."""
         found = self.certificate
-        claim = f"{found.margin} >= {found.at_least:g}"
+        claim = f"{found.margin} {found.bound}"
         size = f"{len(certificate_bytes(found)) / 1e3:.1f}"
         cells = [found.mechanism, IN_WORDS[found.region], claim, found.status, f"{found.boxes:,}", f"{self.search:.2f}"]
         return f"| {' | '.join([*cells, f'{self.replayed:,}', f'{self.replay:.2f}', size])} |\n"

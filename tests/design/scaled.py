@@ -15,7 +15,7 @@ _LENGTHS = ("length", "length_per_turn")
 
 
 def scaled(robot: Mechanism, factor: float) -> Mechanism:
-    """All lengths times a factor, those of joint ranges too; angles stay."""
+    """All lengths times a factor, those of joint ranges and of drives' errors too; angles stay."""
     changes: dict[str, Any] = {}
     for f in fields(robot.geometry):
         value = np.array(getattr(robot.geometry, f.name), dtype=float)
@@ -24,11 +24,13 @@ def scaled(robot: Mechanism, factor: float) -> Mechanism:
         elif kind_of(f).dimension == "frame":
             value[:3, 3] *= factor
         changes[f.name] = _nested(value)
-    ranges = robot.ranges
+    ranges, inertia = robot.ranges, robot.inertia
     if set(robot.joint_units) == {"m"}:
         joints = tuple((low * factor, high * factor) for low, high in ranges.limits(len(robot.joint_names)).tolist())
-        ranges = replace(ranges, joints=joints)
-    return type(robot)(replace(robot.geometry, **changes), robot.inertia, ranges)
+        ranges, train = replace(ranges, joints=joints), inertia.drive_train
+        errors = {name: factor * np.array(getattr(train, name)) for name in ("encoder_resolution", "backlash")}
+        inertia = replace(inertia, drive_train=replace(train, **errors))
+    return type(robot)(replace(robot.geometry, **changes), inertia, ranges)
 
 
 def scaled_box(robot: Mechanism, box: Box, factor: float) -> Box:

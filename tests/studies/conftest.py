@@ -8,8 +8,13 @@ from typing import ClassVar
 import pytest
 
 import kinematics
-from kinematics import InertiaRecord
+from kinematics import InertiaRecord, Margin
 from kinematics.machine import RodRanges, angle, length, screw_pitch
+from kinematics.margins.isotropic import FVI
+from kinematics.margins.mass import MASS
+from kinematics.margins.parallel import DET_J_X
+from kinematics.margins.reach import REACH
+from kinematics.margins.serial import J_Q
 from tests.studies.command_line import SMALL, SmallRun, linkwright
 
 STUDY = """\
@@ -103,7 +108,7 @@ class Fake:
     joint_units: ClassVar[tuple[str, ...]] = ("rad",) * 4
     pose_names: ClassVar[tuple[str, ...]] = ("x", "y", "z", "theta")
     counts_turns: ClassVar[bool] = False
-    margins: ClassVar[tuple[str, ...]] = ("J_q", "J_x", "fvi", "reach")
+    margins: ClassVar[dict[str, Margin]] = {"mass": MASS, "J_q": J_Q, "J_x": DET_J_X, "fvi": FVI, "reach": REACH}
 
     @dataclass(frozen=True)
     class Geometry:

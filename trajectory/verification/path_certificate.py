@@ -21,14 +21,15 @@ import numpy as np
 from kinematics import Array, BoxProgram, Measure, Mechanism, Program, enclose, rounded_down, sides
 from trajectory.errors import PathRefused
 from trajectory.motions import InTime
-from trajectory.paths import Path, PathBox, require_poses_of
+from trajectory.paths import Path, require_poses_of
+from trajectory.verification.centred_form import lower_bounds
+from trajectory.verification.shown_margin import prove_shown
 
 Way = Path | InTime
 _START = 64  # intervals, at least, that the path is cut into first
 _SHARE = 0.9  # of the lowest value seen, that a bound must reach
 _SMALLEST = 1e-9  # of the length: narrower intervals are not halved
 _MOST = 200_000  # intervals
-_UP = 1.0 + 2.0**-48  # covers the roundings of products and of their sum over fewer than ten coordinates
 
 
 @dataclass(frozen=True)
@@ -81,6 +82,10 @@ def certify_path(robot: Mechanism, path: Way) -> PathCertificate:
     margins: dict[str, float] = {}
     for name, bound in zip(claims.names, proved.tolist(), strict=True):
         margins[name] = min(bound, margins.get(name, np.inf))
+    for name, margin in robot.margins.items():
+        if margin.holds_on_paths and margin.shown_on_paths:
+            margins[name], more = prove_shown(robot, path, name, edges)
+            count += more
     return PathCertificate(margins, count)
 
 
@@ -106,7 +111,7 @@ class _Claims:
         values = np.array(ca.Function("start", symbols, [ca.vertcat(*inner)])(start, fixed))[:, 0]
         kept = np.flatnonzero(values != np.inf)  # a limit at infinity cannot be met
         self.names = [parts[k][0] for k in kept]
-        self.limbs = [parts[k][1] for k in kept]
+        self.places = [parts[k][1] for k in kept]
         claims = ca.vertcat(*(_without_modulus(parts[k][2], values[k]) for k in kept))
         gradient = ca.jacobian(claims, model.pose)
 
@@ -121,15 +126,8 @@ class _Claims:
         box, centre = self.path.enclose(low, high), self.path.enclose(middle, middle)
         least, most = enclose(self._with_gradient, box.low, box.high)
         point_least, point_most = enclose(self._plain, centre.low, centre.high)
-        count = len(self.names)
-        natural = least[:, :count]
-        defined = np.isfinite(natural) & np.isfinite(most[:, :count])  # so smooth on all of the box
-        slope = _steepest(least[:, count:], most[:, count:], box, count)
-        half = np.nextafter(np.maximum(high - middle, middle - low), np.inf)[:, None]
-        with np.errstate(invalid="ignore"):
-            centred = point_least - slope * half * _UP
-            centred -= np.abs(centred) * 2.0**-50
-        return np.where(defined & (centred > natural), centred, natural), point_most
+        half = np.nextafter(np.maximum(high - middle, middle - low), np.inf)
+        return lower_bounds(least, most, point_least, box, half), point_most
 
     def refuse(self, where: Array, at: Array, values: Array, proved: bool) -> None:
         """Raise PathRefused for the worst of these (k, claims), of the first margin that has any."""
@@ -137,22 +135,8 @@ class _Claims:
             row = int(np.argmin(np.where(where[:, k], values[:, k], np.inf)))
             s = float(at[row])
             (pose,) = self.path.evaluate(np.array(s), 0)
-            limb, near = self.limbs[k], self.path.waypoint(s)
-            raise PathRefused(self.names[k], s, pose.tolist(), limb, float(values[row, k]), proved, near)
-
-
-def _steepest(least: Array, most: Array, box: PathBox, count: int) -> Array:
-    """(k, claims) bound of the modulus of each claim's derivative by s, from its gradient and the path's derivative."""
-    shape = (len(least), count, box.low.shape[1])
-    gradient = [v.reshape(shape) for v in (least, most)]
-    rates = [v[:, None, :] for v in (box.first_low, box.first_high)]
-    with np.errstate(invalid="ignore"):
-        products = np.stack([g * r for g in gradient for r in rates])
-        lowest, highest = products.min(axis=0), products.max(axis=0)
-        rounding = np.maximum(np.abs(lowest), np.abs(highest)).sum(axis=-1) * 2.0**-48
-        slope = np.maximum(np.abs(lowest.sum(axis=-1)), np.abs(highest.sum(axis=-1))) + rounding
-    result: Array = np.nan_to_num(slope, nan=np.inf, posinf=np.inf)
-    return result
+            place, near = self.places[k], self.path.waypoint(s)
+            raise PathRefused(self.names[k], s, pose.tolist(), place, float(values[row, k]), proved, near)
 
 
 def _without_modulus(part: ca.SX, at_start: float) -> ca.SX:
@@ -161,16 +145,16 @@ def _without_modulus(part: ca.SX, at_start: float) -> ca.SX:
     return -part.dep(0) if at_start < 0.0 else part.dep(0)
 
 
-def _margins(robot: Mechanism) -> list[tuple[str, int | None, ca.SX]]:
-    """Name, limb and expression of each margin that a path must keep; a component that is the lower of two counts
+def _margins(robot: Mechanism) -> list[tuple[str, str | None, ca.SX]]:
+    """Name, place and expression of each margin that a path must keep; a component that is the lower of two counts
     twice."""
     measure = Measure(robot.fvi_bounds, robot.characteristic_length)
-    found: list[tuple[str, int | None, ca.SX]] = []
+    found: list[tuple[str, str | None, ca.SX]] = []
     for name, margin in robot.margins.items():
-        if margin.holds_on_paths:
+        if margin.holds_on_paths and not margin.shown_on_paths:
             components = margin.components(robot, measure)
             count = components.numel()
-            limbs: Sequence[int | None] = margin.limbs(robot) or [None] * count
-            for limb, component in zip(limbs, ca.vertsplit(components), strict=True):
-                found += [(name, limb, side) for side in sides(component)]
+            places: Sequence[str | None] = margin.places(robot) or [None] * count
+            for place, component in zip(places, ca.vertsplit(components), strict=True):
+                found += [(name, place, side) for side in sides(component)]
     return found

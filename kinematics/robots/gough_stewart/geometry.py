@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar, Self
 
 import numpy as np
@@ -15,6 +15,7 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.errors import InvalidField, InvalidGeometry, InvalidValue
 from kinematics.machine import (
+    LINEAR,
     TURN,
     DriveTrain,
     GeometryRecord,
@@ -177,7 +178,7 @@ class GoughStewartInertia(InertiaRecord):
     rod_mass: float | None = None
     platform_joint: float = 0.3
     platform_mass: float | None = None
-    drive_train: DriveTrain = field(default=DriveTrain(stiffness=5e7), kw_only=True)
+    drive_train: DriveTrain = field(default=replace(LINEAR, stiffness=5e7), kw_only=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()

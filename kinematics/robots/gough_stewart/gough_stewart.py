@@ -16,8 +16,19 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.errors import InvalidShape
-from kinematics.machine import TURN, Bodies, LimbStatics, Member, Particle, PassiveJoint, Rotor, Tube, shared_joints
-from kinematics.margins import PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
+from kinematics.machine import (
+    TURN,
+    Bodies,
+    LimbStatics,
+    Member,
+    Particle,
+    PassiveJoint,
+    Rotor,
+    Tube,
+    platform,
+    shared_joints,
+)
+from kinematics.margins import ANGLE_ACCURACY, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.model import FviBounds, Mechanism, Mode, Model, by_name
 from kinematics.robots.gough_stewart.forward import ForwardSolution, assembly_modes, matched_pose
 from kinematics.robots.gough_stewart.geometry import GoughStewartGeometry, GoughStewartInertia, GoughStewartRanges
@@ -42,7 +53,7 @@ class GoughStewart(SixLegs):
     ranges: GoughStewartRanges
     joint_units = ("m",) * 6
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=2000.0, speed=0.3, force=500.0)
-    margins = by_name(*STANDARD, ROTATIONAL_STIFFNESS, PASSIVE_JOINT)
+    margins = by_name(*STANDARD, ANGLE_ACCURACY, ROTATIONAL_STIFFNESS, PASSIVE_JOINT)
 
     @staticmethod
     def default_home(geometry: GoughStewartGeometry) -> tuple[float, ...]:
@@ -271,6 +282,12 @@ class GoughStewart(SixLegs):
             rod_statics(members[i : i + 1], self.structure, wrenches[:, i], along[:, i], joints[i], efforts[:, i])
             for i in range(6)
         ]
+
+    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
+        """The base: a plate, or bars to the legs' joints if these are not in one plane."""
+        numbers = np.array(self.geometry.base_points)
+        shapes = platform(self.base_points(g), numbers, g.plate_thickness)
+        return [Member("base", ("base", *shared_joints("A", numbers)), "", shapes)]
 
     @staticmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:  # noqa: ARG004

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from kinematics.machine import TURN, Bodies, Particle, Rotor, member_mass
+from kinematics.machine import AXES, TURN, Bodies, Particle, Rotor, member_mass
 from kinematics.robots.heli4.geometry import UPPER
 from kinematics.robots.shared import ArmInertia, arms_and_rods
 
@@ -44,5 +44,5 @@ def bodies(robot: Heli4, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload
     above = pose[:3] + g.pitch / TURN * pose[3] * ca.DM([0, 0, 1])
     lower = Particle(plates[0], masses[0] + payload, pose[:3])
     found.particles.extend([lower, Particle(plates[1], masses[1], above)])
-    found.rotors.append(Rotor(i.tool, pose[3]))
+    found.rotors.append(Rotor(i.tool, pose[3], AXES[2]))
     return found

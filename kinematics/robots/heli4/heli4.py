@@ -15,7 +15,7 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import TURN, Member, Tube
-from kinematics.margins import INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
+from kinematics.margins import ANGLE_ACCURACY, INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.mathematics import gaps, real_roots, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, in_aspect, joined_to_home, polished
 from kinematics.robots.heli4.bodies import Heli4Inertia, bodies
@@ -31,6 +31,7 @@ from kinematics.robots.shared import (
     height_in_reach,
     limb_members,
     means_and_differences,
+    motors,
     outline,
     radial_directions,
     studs,
@@ -56,7 +57,10 @@ class Heli4(PairedArms):
     rotations = (3,)
     counts_turns = True
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=150.0)
-    margins = by_name(*STANDARD, ROTATIONAL_STIFFNESS, INTERNAL_DETERMINANT, INTERNAL_STIFFNESS, PASSIVE_JOINT)
+    tool_member = "lower plate"
+    margins = by_name(
+        *STANDARD, ANGLE_ACCURACY, ROTATIONAL_STIFFNESS, INTERNAL_DETERMINANT, INTERNAL_STIFFNESS, PASSIVE_JOINT
+    )
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta", "epsilon_1", "epsilon_2")
     # (51): sums and differences of a limb's two rods; the plates' own rotations instead of the relative ones.
     row_combinations = means_and_differences(4)
@@ -133,6 +137,10 @@ class Heli4(PairedArms):
             middle = Tube(ends[:, first], ends[:, first + 1], radius, radius)
             plates.append(Member(name, joints_of, "plate", (middle, *axles)))
         return limb_members(cls, pose, joints, g, g.parallelogram_width) + plates
+
+    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
+        """The motors."""
+        return motors(self.limbs(g), g)
 
     @staticmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:

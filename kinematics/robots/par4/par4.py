@@ -17,8 +17,8 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
-from kinematics.machine import TURN, Bodies, Member, Particle, Rotor, Tube, angle, bar, length, member_mass, ratio
-from kinematics.margins import INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
+from kinematics.machine import AXES, TURN, Bodies, Member, Particle, Rotor, Tube, angle, bar, length, member_mass, ratio
+from kinematics.margins import ANGLE_ACCURACY, INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.mathematics import determinant, distinct, volume, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, joined_to_home, polished
 from kinematics.robots.par4.forward import Halves, candidates
@@ -37,6 +37,7 @@ from kinematics.robots.shared import (
     height_in_reach,
     limb_members,
     means_and_differences,
+    motors,
     radial_directions,
     studs,
 )
@@ -67,6 +68,8 @@ class Par4Geometry(HalvesGeometry):
     rod_radius: float = length(0.006, doc="of the rods' tubes, outside")
     rod_wall: float = length(0.0015, doc="of the rods' tubes")
     bar_thickness: float = length(0.012, doc="of the platform's halves and bars")
+    motor_radius: float = length(0.040, doc="of the motors")
+    motor_length: float = length(0.080, doc="of the motors along their axes, without their round ends")
     amplification: float = ratio(4.0, doc="k, turns of the tool a turn of the bars; 1 without a gear")
 
 
@@ -107,8 +110,15 @@ class Par4(PairedArms):
     rotations = (3,)
     counts_turns = True  # of the bars, by the gear
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=100.0)
+    tool_member = "half 1"
     margins = by_name(
-        *STANDARD, ROTATIONAL_STIFFNESS, PI_JOINT, INTERNAL_DETERMINANT, INTERNAL_STIFFNESS, PASSIVE_JOINT
+        *STANDARD,
+        ANGLE_ACCURACY,
+        ROTATIONAL_STIFFNESS,
+        PI_JOINT,
+        INTERNAL_DETERMINANT,
+        INTERNAL_STIFFNESS,
+        PASSIVE_JOINT,
     )
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "omega_z", "theta")
     row_combinations = means_and_differences(4)
@@ -182,7 +192,7 @@ class Par4(PairedArms):
             mass = own if i.half_masses is None else i.half_masses[k]
             bodies.particles.append(Particle(halves[k], mass, pose[:3] + side * half))
         bodies.particles.append(Particle("bars", i.bars_mass + payload, pose[:3]))
-        bodies.rotors.extend([Rotor(i.bars_inertia, psi), Rotor(i.tool, pose[3])])
+        bodies.rotors.extend([Rotor(i.bars_inertia, psi, AXES[2]), Rotor(i.tool, pose[3], AXES[2])])
         return bodies
 
     @classmethod
@@ -198,6 +208,10 @@ class Par4(PairedArms):
             axles = [Tube(held[:, 2 * i], held[:, 2 * i + 1], thick, thick) for i in limbs]
             platform.append(Member(name, (name, *(f"B{i + 1}" for i in limbs)), "plate", (*spokes, *axles)))
         return limb_members(cls, pose, joints, g, g.parallelogram_width) + platform
+
+    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
+        """The motors."""
+        return motors(self.limbs(g), g)
 
     @classmethod
     def skeleton(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
-from kinematics.machine import DriveTrain, GeometryRecord, InertiaRecord, Pair, RodRanges, length, screw_pitch
+from kinematics.machine import ROTARY, DriveTrain, GeometryRecord, InertiaRecord, Pair, RodRanges, length, screw_pitch
 
 # Share of the larger pitch. Rounding of a nut's height [m] changes theta by 2 pi / |p_1 - p_2| times as much [rad]. At
 # this difference of pitches theta is known to about 1e-8 rad; at 1e-11 only to 1e-3.
@@ -28,6 +28,7 @@ class PeppermillGeometry(GeometryRecord):
     link_wall: float = length(0.002, doc="of both limbs' links")
     nut_spacing: float = length(0.30, doc="between the nuts at theta = 0; not in the paper, whose nuts coincide there")
     screw_radius: float = length(0.010, doc="of the platform's screws")
+    column_radius: float = length(0.020, doc="of the drive columns; not in the paper")
     drive_pitch: float = screw_pitch(0.10, doc="p_c, of the drives' screws")
 
     def __post_init__(self) -> None:
@@ -72,7 +73,7 @@ class PeppermillInertia(InertiaRecord):
     nut_mass: float = 0.2
     platform_mass: float = 0.8
     tool: float = 6.0e-4
-    drive_train: DriveTrain = field(default=DriveTrain(stiffness=2e3), kw_only=True)
+    drive_train: DriveTrain = field(default=replace(ROTARY, stiffness=2e3), kw_only=True)
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,10 @@ def links(robot: Peppermill, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, ref
     for i in range(2):
         slide = TreeJoint(f"d{i + 1}", "slide", AXES[i], ORIGIN, joints[i])
         turn = TreeJoint(f"theta{i + 1}", "hinge", AXES[i], carriages[:, i], joints[2 + i])
-        chain += [Link(f"carriage {i + 1}", None, (slide,)), Link(f"proximal {i + 1}", f"carriage {i + 1}", (turn,))]
+        chain += [
+            Link(f"carriage {i + 1}", None, (slide,)),
+            Link(f"proximal link {i + 1}", f"carriage {i + 1}", (turn,)),
+        ]
         planes.append(Coupling("xy"[i], f"d{i + 1}", ca.SX(1)))
     slides = tuple(TreeJoint("xyz"[k], "slide", AXES[k], ORIGIN, pose[k]) for k in range(3))
     chain.append(Link("platform", None, slides))

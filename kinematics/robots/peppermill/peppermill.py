@@ -21,6 +21,7 @@ from kinematics.arrays import Array
 from kinematics.dynamics import from_actuators, to_actuators
 from kinematics.evaluation import evaluate
 from kinematics.machine import (
+    AXES,
     TURN,
     Bodies,
     Member,
@@ -33,7 +34,7 @@ from kinematics.machine import (
     bar,
     rod_mass,
 )
-from kinematics.margins import INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
+from kinematics.margins import ANGLE_ACCURACY, INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.model import Build, FviBounds, Mechanism, Mode, Model, by_name
 from kinematics.robots.peppermill import limbs
 from kinematics.robots.peppermill.geometry import PeppermillGeometry, PeppermillInertia, PeppermillRanges
@@ -63,7 +64,8 @@ class Peppermill(Mechanism):
     counts_turns = True
     # 750 W servos at 3000 rpm and three times their rated torque; 2.5 m/s and 50 N are wanted. All are our assumptions.
     fvi_bounds = FviBounds(joint_speed=314.0, joint_effort=7.2, speed=2.5, force=50.0)
-    margins = by_name(*STANDARD, ROTATIONAL_STIFFNESS, INTERNAL_STIFFNESS, PASSIVE_JOINT)
+    tool_member = "screws"
+    margins = by_name(*STANDARD, ANGLE_ACCURACY, ROTATIONAL_STIFFNESS, INTERNAL_STIFFNESS, PASSIVE_JOINT)
 
     @property
     def characteristic_length(self) -> float:
@@ -215,6 +217,16 @@ class Peppermill(Mechanism):
         nuts = ca.repmat(pose[:3], 1, 2) + _E_Z @ (g.pitches.T / TURN * pose[3])
         return origins, carriages, carriages + proximal, nuts
 
+    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+        """The drive columns, as long as the carriages' ranges. A column without a range is left out."""
+        origins, limits = self.points(pose, joints, g)[0] + _nuts_apart(g), self.ranges.limits(4)
+        along = ca.DM([[1, 0], [0, 1], [0, 0]])
+        found = []
+        for i in np.flatnonzero(np.isfinite(limits[:2]).all(axis=1)).tolist():
+            start, end = (origins[:, i] + limit * along[:, i] for limit in limits[i])
+            found.append(bar(f"column {i + 1}", ("base", f"carriage {i + 1}"), "", start, end, g.column_radius))
+        return found
+
     link_tree = links
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
@@ -229,7 +241,7 @@ class Peppermill(Mechanism):
             carriage, link = carriages[:, limb], elbows[:, limb] - carriages[:, limb]
             mass, centre, factor = arm_mass(links * g.proximal_lengths[limb], i.proximal_hub, i.proximal_joint, given)
             own = (factor - 1) * mass * (centre * g.proximal_lengths[limb]) ** 2  # beyond the particle at the centre
-            slide, proximal, nut = (f"{name} {limb + 1}" for name in ("carriage", "proximal", "nut"))
+            slide, proximal, nut = (f"{name} {limb + 1}" for name in ("carriage", "proximal link", "nut"))
             bodies.particles.extend(
                 [
                     Particle(slide, i.carriage_mass, carriage),
@@ -237,11 +249,12 @@ class Peppermill(Mechanism):
                     Particle(nut, i.nut_mass, nuts[:, limb]),
                 ]
             )
-            bodies.rotors.append(Rotor(i.carriage + own, joints[2 + limb]))
+            bodies.rotors.append(Rotor(i.carriage, joints[2 + limb], AXES[limb]))
+            bodies.rotors.append(Rotor(own, joints[2 + limb], AXES[limb], proximal))
             whole, middle = rod_mass(links * g.distal_lengths[limb], i.distal_joint, i.distal_mass, i.rod_middle)
             bodies.rods.append(Rod(whole, middle, (nut, proximal), nuts[:, limb], elbows[:, limb]))
         bodies.particles.append(Particle("platform", i.platform_mass + payload, pose[:3]))
-        bodies.rotors.append(Rotor(i.tool, pose[3]))
+        bodies.rotors.append(Rotor(i.tool, pose[3], AXES[2]))
         return bodies
 
     @classmethod
@@ -251,11 +264,19 @@ class Peppermill(Mechanism):
         The paper's nuts coincide at theta = 0. Limb 1 is moved down and limb 2 up, by half of `nut_spacing` each: the
         same machine with its drive axes further apart.
         """
-        apart = _E_Z @ (g.nut_spacing / 2 * ca.DM([[-1, 1]]))
+        apart = _nuts_apart(g)
         carriages, elbows, nuts = (points + apart for points in cls.points(pose, joints, g)[1:])
         return carriages, elbows, nuts
 
     statics = statics
+
+    @classmethod
+    def beyond_twist(cls, pose: ca.SX, g: SimpleNamespace, limb: int | None, point: ca.SX) -> ca.SX:
+        """Two tilts about the tool point, and each nut's own turn, by which it falls."""
+        tilts, turns = -ca.skew(point - pose[:3])[:, :2], ca.SX(3, 2)
+        if limb is not None:
+            turns[2, limb] = -g.pitches[limb] / TURN
+        return ca.horzcat(tilts, turns)
 
     @classmethod
     def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
@@ -267,7 +288,7 @@ class Peppermill(Mechanism):
             slide, elbow, nut = f"carriage {k}", f"elbow {k}", f"nut {k}"
             near, far = (_link(*ends, g) for ends in ((carriages[:, i], elbows[:, i]), (elbows[:, i], nuts[:, i])))
             found += [
-                Member(f"proximal link {k}", (slide, elbow), "link", (near,), f"proximal {k}"),
+                Member(f"proximal link {k}", (slide, elbow), "link", (near,)),
                 Member(f"distal link {k}", (elbow, nut), "link", (far,), f"rod {k}"),
             ]
         return found
@@ -300,6 +321,12 @@ def _inverse_modes(_: Peppermill, model: Model) -> list[ca.SX]:
 
 def _forward_modes(_: Peppermill, model: Model) -> Build:
     return [model.joints], [ca.horzcat(*(limbs.pose_of_joints(model.joints, s, model.g) for s in limbs.SIDES)).T]
+
+
+def _nuts_apart(g: SimpleNamespace) -> ca.SX:
+    """(3, 2) how far each limb is moved, so that the nuts do not coincide at theta = 0."""
+    result: ca.SX = _E_Z @ (g.nut_spacing / 2 * ca.DM([[-1, 1]]))
+    return result
 
 
 def _link(start: ca.SX, end: ca.SX, g: SimpleNamespace) -> Tube:

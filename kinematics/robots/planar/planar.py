@@ -7,7 +7,7 @@ Pose [x, y, theta]. Given the joints, all three are the same problem: three plat
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
 import casadi as ca
@@ -16,6 +16,7 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import (
+    LINEAR,
     TURN,
     Bodies,
     DriveTrain,
@@ -31,7 +32,7 @@ from kinematics.machine import (
     platform,
     shared_joints,
 )
-from kinematics.margins import ROTATIONAL_STIFFNESS, STANDARD
+from kinematics.margins import ANGLE_ACCURACY, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.mathematics import distinct
 from kinematics.model import Build, Mechanism, Model, by_name, joined_to_home
 from kinematics.robots.planar.forward import placements, rods_and_determinant
@@ -105,7 +106,7 @@ class PlanarInertia(InertiaRecord):
     link_mass: float | None = None
     platform_joint: float = 0.137
     platform_mass: float | None = None
-    drive_train: DriveTrain = field(default=DriveTrain(stiffness=2e6), kw_only=True)
+    drive_train: DriveTrain = field(default=replace(LINEAR, stiffness=2e6), kw_only=True)
 
 
 class Planar(Mechanism):
@@ -116,7 +117,7 @@ class Planar(Mechanism):
     pose_names = ("x", "y", "theta")
     joint_names = ("q1", "q2", "q3")
     rotations = (2,)
-    margins = by_name(*STANDARD, ROTATIONAL_STIFFNESS)
+    margins = by_name(*STANDARD, ANGLE_ACCURACY, ROTATIONAL_STIFFNESS)
 
     @property
     def characteristic_length(self) -> float:

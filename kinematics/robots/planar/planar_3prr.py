@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.machine import TURN, Bodies, JointRanges, Pair, Rod, Rotor, angle, length, rod_mass
+from kinematics.machine import TURN, Bodies, JointRanges, Member, Pair, Rod, Rotor, angle, bar, length, rod_mass
 from kinematics.model import FviBounds, Mode
 from kinematics.robots.planar.planar import AZIMUTHS, Planar, PlanarGeometry, PlanarInertia
 from kinematics.robots.shared import radial_directions
@@ -20,6 +20,7 @@ class Planar3PRRGeometry(PlanarGeometry):
     """Rails along the tangents of the base's circle."""
 
     rod_lengths: tuple[float, ...] = length((0.55,) * 3, doc="l_i, slider to platform")
+    rail_radius: float = length(0.010, doc="of the rails")
     rail_angles: tuple[float, ...] = angle(tuple(a + TURN / 4 for a in AZIMUTHS), doc="of the rails, from x")
 
     def _drives(self) -> list[Array]:
@@ -95,6 +96,15 @@ class Planar3PRR(Planar):
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:
         """l_i for each J_q,i; `determinant_scale` times their product for det J_x."""
         return g.rod_lengths, Planar.determinant_scale(g) * g.rod_lengths[0] * g.rod_lengths[1] * g.rod_lengths[2]
+
+    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
+        """The rails, as long as the joints' ranges. A rail without a range is left out."""
+        base, along, limits = self.base_points(g), self._rails(g)[0], self.ranges.limits(3)
+        found = []
+        for i in np.flatnonzero(np.isfinite(limits).all(axis=1)).tolist():
+            start, end = (base[:, i] + limit * along[:, i] for limit in limits[i])
+            found.append(bar(f"rail {i + 1}", ("base", f"A{i + 1}"), "", start, end, g.rail_radius))
+        return found
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Drives, rods and platform."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
 import casadi as ca
@@ -10,6 +10,7 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.machine import (
+    ROTARY,
     Bodies,
     DriveTrain,
     GeometryRecord,
@@ -55,7 +56,7 @@ class Planar3RRRInertia(PlanarInertia):
     arm_mass: float | None = None
     arm_centre: float | None = None
     arm_factor: float | None = None
-    drive_train: DriveTrain = field(default=DriveTrain(stiffness=1e4), kw_only=True)
+    drive_train: DriveTrain = field(default=replace(ROTARY, stiffness=1e4), kw_only=True)
 
     @property
     def rod_joint(self) -> float:

@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from kinematics.machine import Bodies, DriveTrain, InertiaRecord, Particle, Rod, Rotor, mass_points, rod_mass
+from kinematics.machine import (
+    AXES,
+    LINEAR,
+    Bodies,
+    DriveTrain,
+    InertiaRecord,
+    Particle,
+    Rod,
+    Rotor,
+    mass_points,
+    rod_mass,
+)
 from kinematics.robots.redundant_3t1r.geometry import LIMBS, PARALLELOGRAMS
 
 if TYPE_CHECKING:
@@ -37,7 +48,7 @@ class Redundant3T1RInertia(InertiaRecord):
     fittings_inertia: float = 0.012
     platform_mass: float | None = None
     platform_inertia: float | None = None
-    drive_train: DriveTrain = field(default=DriveTrain(stiffness=1e7), kw_only=True)
+    drive_train: DriveTrain = field(default=replace(LINEAR, stiffness=1e7), kw_only=True)
 
 
 def bodies(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
@@ -62,5 +73,5 @@ def bodies(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace,
         about = ca.sum1(ca.vertcat(*(m * ca.sumsqr(p[:2]) for m, p in own)))
         inertia = inertia + about if i.platform_inertia is None else ca.SX(i.platform_inertia)
     found.particles.append(Particle("platform", mass + payload, pose[:3]))
-    found.rotors.append(Rotor(inertia, pose[3]))
+    found.rotors.append(Rotor(inertia, pose[3], AXES[2]))
     return found

@@ -32,6 +32,9 @@ class Redundant3T1RGeometry(GeometryRecord):
     parallelogram_width: float = length(0.1, doc="between the two rods of arms 3 and 4; not in the paper")
     rod_radius: float = length(0.010, doc="of the rods' tubes, outside; not in the paper")
     rod_wall: float = length(0.002, doc="of the rods' tubes; not in the paper")
+    rail_radius: float = length(0.010, doc="of the rails; not in the paper")
+    slide_radius: float = length(0.020, doc="of the slides around their rails; not in the paper")
+    slide_length: float = length(0.080, doc="of the slides along x, without their round ends; not in the paper")
     platform_thickness: float = length(0.020, doc="of the platform's bars; not in the paper")
 
     def __post_init__(self) -> None:

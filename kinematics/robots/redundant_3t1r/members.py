@@ -6,8 +6,9 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import casadi as ca
+import numpy as np
 
-from kinematics.machine import Member, Tube
+from kinematics.machine import Member, Tube, bar
 from kinematics.robots.redundant_3t1r.geometry import LIMBS, PARALLELOGRAMS
 from kinematics.robots.shared import SIDES
 
@@ -34,3 +35,17 @@ def members(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace
     bars = ((platform[:, 0], platform[:, 4]), (middle, platform[:, 2]), (platform[:, 2] - stud, platform[:, 2] + stud))
     shapes = tuple(Tube(start, end, half, half) for start, end in bars)
     return [*found, Member("platform", ("B1", "B3", "B5"), "plate", shapes)]
+
+
+def base_members(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG001
+    """The rails, as long as the joints' ranges, and a slide on each. A rail without a range is left out."""
+    points, half = robot.rail_points(joints, g), g.slide_length / 2 * ca.DM([1, 0, 0])
+    limits = robot.ranges.limits(LIMBS)
+    found = []
+    for i in range(LIMBS):
+        held = f"A{i + 1}"
+        found.append(bar(f"slide {i + 1}", (held,), "", points[:, i] - half, points[:, i] + half, g.slide_radius))
+        if np.isfinite(limits[i]).all():
+            start, end = (ca.vertcat(limit, points[1:, i]) for limit in limits[i])
+            found.append(bar(f"rail {i + 1}", ("base", held), "", start, end, g.rail_radius))
+    return found

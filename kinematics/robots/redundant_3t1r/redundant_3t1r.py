@@ -19,7 +19,7 @@ import numpy as np
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import PassiveJoint
-from kinematics.margins import INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
+from kinematics.margins import ANGLE_ACCURACY, INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.model import (
     BestFit,
     EncoderCheck,
@@ -40,7 +40,7 @@ from kinematics.robots.redundant_3t1r.geometry import (
     Redundant3T1RGeometry,
     Redundant3T1RRanges,
 )
-from kinematics.robots.redundant_3t1r.members import members
+from kinematics.robots.redundant_3t1r.members import base_members, members
 from kinematics.robots.redundant_3t1r.singularities import ParallelSingularity, parallel_conditions
 from kinematics.robots.redundant_3t1r.statics import statics
 from kinematics.robots.shared import INTERNAL_DETERMINANT, SIDES, RodLevel, outline
@@ -66,7 +66,9 @@ class Redundant3T1R(RodLevel):
     joint_names = ("x1", "x2", "x3", "x4", "x5", "x6")
     joint_units = ("m",) * LIMBS
     rotations = (3,)
-    margins = by_name(*STANDARD, ROTATIONAL_STIFFNESS, INTERNAL_DETERMINANT, INTERNAL_STIFFNESS, PASSIVE_JOINT)
+    margins = by_name(
+        *STANDARD, ANGLE_ACCURACY, ROTATIONAL_STIFFNESS, INTERNAL_DETERMINANT, INTERNAL_STIFFNESS, PASSIVE_JOINT
+    )
     mirrors = (("y", "theta"), ("z",))
     fvi_bounds = FviBounds(joint_speed=1.0, joint_effort=1.0, speed=0.5, force=0.5)
     rod_velocities = ("x", "y", "z", "omega_x", "omega_y", "theta")
@@ -225,6 +227,7 @@ class Redundant3T1R(RodLevel):
 
     members = members
     statics = statics
+    base_members = base_members
 
     def arm_clearance(self, pose: Array, rods: bool = False) -> Array:
         """(...,) the smallest of `arm_distances` [m], between axes: subtract the arms' thickness."""

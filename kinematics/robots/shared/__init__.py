@@ -1,6 +1,6 @@
 """Parts that several mechanisms use: rotary limbs, paired rods, and a check for limbs that coincide."""
 
-from kinematics.robots.shared.arm_and_rod_members import SIDES, limb_members, studs
+from kinematics.robots.shared.arm_and_rod_members import SIDES, limb_members, motors, studs
 from kinematics.robots.shared.arm_masses import ArmInertia, arms_and_rods
 from kinematics.robots.shared.coincident_limbs import ALIKE, HalvesGeometry, twins
 from kinematics.robots.shared.internal_determinant import INTERNAL_DETERMINANT
@@ -36,6 +36,7 @@ __all__ = [
     "height_in_reach",
     "limb_members",
     "means_and_differences",
+    "motors",
     "outline",
     "radial_directions",
     "rod_statics",

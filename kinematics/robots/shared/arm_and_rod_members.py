@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from kinematics.machine import Member, Tube
+from kinematics.machine import Member, Tube, bar
 
 if TYPE_CHECKING:
-    from kinematics.robots.shared.rotary_limbs import RotaryLimbs
+    from kinematics.robots.shared.rotary_limbs import Limbs, RotaryLimbs
 
 SIDES = {" a": -0.5, " b": 0.5}  # of the two rods of a limb, in parts of their distance
 
@@ -35,6 +35,16 @@ def limb_members(
             tube = Tube(elbows[:, i] + aside, ends[:, i] + aside, g.rod_radius, g.rod_wall)
             found.append(Member(f"rod {i + 1}{name}", held, "rod", (tube,), f"rod {i + 1}"))
     return found
+
+
+def motors(limbs: Limbs, g: SimpleNamespace) -> list[Member]:
+    """Each limb's motor, along the arm's axis about P_i."""
+    points, half = limbs.actuators, g.motor_length / 2 * limbs.axes()
+    starts, ends = points - half, points + half
+    return [
+        bar(f"motor {i + 1}", ("base", f"P{i + 1}"), "", starts[:, i], ends[:, i], g.motor_radius)
+        for i in range(points.shape[1])
+    ]
 
 
 def studs(points: ca.SX, axes: ca.SX, width: ca.SX) -> ca.SX:

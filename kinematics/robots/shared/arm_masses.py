@@ -3,12 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
 import casadi as ca
 
-from kinematics.machine import Bodies, DriveTrain, InertiaRecord, Member, Particle, Rod, Rotor, Tube, arm_mass, rod_mass
+from kinematics.machine import (
+    ROTARY,
+    Bodies,
+    DriveTrain,
+    InertiaRecord,
+    Member,
+    Particle,
+    Rod,
+    Rotor,
+    Tube,
+    arm_mass,
+    rod_mass,
+)
 from kinematics.robots.shared.rotary_limbs import RotaryLimbs
 
 
@@ -35,7 +47,7 @@ class ArmInertia(InertiaRecord):
     arm_centre: float | None = None
     arm_factor: float | None = None
     rod_mass: float | None = None
-    drive_train: DriveTrain = field(default=DriveTrain(stiffness=1e5), kw_only=True)
+    drive_train: DriveTrain = field(default=replace(ROTARY, stiffness=1e5), kw_only=True)
 
 
 def arms_and_rods(
@@ -50,7 +62,7 @@ def arms_and_rods(
     i, limbs, bodies = robot.inertia, robot.limbs(g), Bodies()
     swing, elbows, ends = limbs.swing(joints), limbs.elbows(joints), robot.platform_points(pose, g)
     members = {member.name: member for member in robot.members(pose, joints, g)}
-    count = joints.numel()
+    count, axes = joints.numel(), limbs.axes()
     arms, rods = (ca.repmat(length, count // length.numel(), 1) for length in (limbs.arm, limbs.rod))
 
     def tube_mass(member: Member, place: int, length: ca.SX) -> ca.SX:
@@ -66,7 +78,8 @@ def arms_and_rods(
         place = centre * arms[limb]
         bodies.particles.append(Particle(arm.name, mass, limbs.actuators[:, limb] + place * swing[:, limb]))
         own = (factor - 1) * mass * place**2  # beyond the particle at the centre of mass
-        bodies.rotors.append(Rotor(i.drive + own, joints[limb]))
+        bodies.rotors.append(Rotor(i.drive, joints[limb], axes[:, limb]))
+        bodies.rotors.append(Rotor(own, joints[limb], axes[:, limb], arm.name))
         tubes, joint = several * tube_mass(single, 0, rods[limb]), several * i.rod_joint
         whole, middle = rod_mass(tubes, joint, i.rod_mass, i.rod_middle)
         bodies.rods.append(Rod(whole, middle, (platforms[limb], arm.name), ends[:, limb], elbows[:, limb]))

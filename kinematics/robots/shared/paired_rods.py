@@ -83,6 +83,17 @@ class RodLevel(Mechanism):
             columns.append(shift.T @ pull + turn.T @ ca.cross(ends[:, limb] + aside - pose[:3], pull))
         return ca.DM(cls.column_combinations).T @ ca.horzcat(*columns)
 
+    @classmethod
+    def beyond_twist(cls, pose: ca.SX, g: SimpleNamespace, limb: int | None, point: ca.SX) -> ca.SX:
+        """As what the limb holds; a body that no limb holds moves as the mean of those that limbs hold."""
+        held = range(len(cls.joint_names)) if limb is None else (limb,)
+        displacement, velocity = ca.SX.sym("displacement", len(cls.rod_velocities)), ca.SX(3, 1)
+        for one in held:
+            shift, turn = cls.carried(pose, displacement, one, g)
+            velocity += (shift + ca.cross(turn, point - pose[:3])) / len(held)
+        by_freedom = ca.jacobian(velocity, displacement) @ ca.DM(cls.column_combinations)
+        return by_freedom[:, pose.numel() :]
+
     def rod_system_symbolic(self) -> tuple[ca.SX, ca.SX]:
         """J_l (k, m) and J_r (k, v) of (49) at a pose, by differentiation of the rods' lengths."""
         model = self.model()

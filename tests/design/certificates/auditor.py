@@ -54,7 +54,7 @@ class Auditor:
     def holds_at(self, pose: Array) -> bool:
         """Whether every component of the margin, as the mechanism defines it, reaches the bound at a pose."""
         values = run_through(self._margin, [*(arb(float(v)) for v in pose), *self._fixed], OPERATIONS)
-        return all(bool(arb(v) >= self.certificate.at_least) for v in values)
+        return all(bool(arb(v) >= self.certificate.bound.value) for v in values)
 
     def proves(self, low: Array, high: Array, depth: int = 12) -> bool:
         """Whether the claims hold on a box by the mean-value form in balls, cut further where balls are too round."""

@@ -25,6 +25,7 @@ from kinematics import (
     by_name,
 )
 from kinematics.evaluation import threads
+from tests.design.words import bound_of, trivial
 from tests.sizes import later
 
 PI = math.pi
@@ -149,8 +150,8 @@ def test_a_bound_below_zero_is_not_proved_out_of_reach_either(monkeypatch: pytes
     monkeypatch.setattr("design.certificates.refutation.Refuter.refutation", lambda *_: None)
     beyond = Box(x=(0.0, 1.4), y=0.0, z=-0.7, theta=0.0)
     for margin in Heli4.margins:
-        at_least = 0.0 if margin == "reach" else -1e-3
-        found = certify(Heli4(), beyond, margin, at_least=at_least, most_boxes=5_000)
+        weak = bound_of(Heli4(), margin, 0.0) if margin == "reach" else trivial(Heli4(), margin, 1e3)
+        found = certify(Heli4(), beyond, margin, **weak, most_boxes=5_000)
         assert found.status == "undecided", margin
 
 
@@ -164,13 +165,16 @@ def test_a_bound_below_zero_is_not_proved_out_of_reach_either(monkeypatch: pytes
 def test_no_margin_of_any_robot_is_proved_beyond_reach(
     robot: Mechanism, beyond: Region, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for at_least in (-1.0, 1e-9):
-        for margin in [name for name in robot.margins if name != "reach"]:
-            assert certify(robot, beyond, margin, at_least=at_least, most_boxes=3_000).status == "refuted"
+    asked = [(name, weak) for name in robot.margins if name != "reach" for weak in _weak(robot, name)]
+    for margin, weak in asked:
+        assert certify(robot, beyond, margin, **weak, most_boxes=3_000).status == "refuted"
     monkeypatch.setattr("design.certificates.refutation.Refuter.refutation", lambda *_: None)
-    for at_least in (-1.0, 1e-9):
-        for margin in [name for name in robot.margins if name != "reach"]:
-            assert certify(robot, beyond, margin, at_least=at_least, most_boxes=3_000).status == "undecided", margin
+    for margin, weak in asked:
+        assert certify(robot, beyond, margin, **weak, most_boxes=3_000).status == "undecided", margin
+
+
+def _weak(robot: Mechanism, margin: str) -> tuple[dict[str, float], ...]:
+    return trivial(robot, margin, 1e3), bound_of(robot, margin, 1e-9 if robot.margins[margin].sense > 0 else 1.0)
 
 
 def test_a_modulus_is_above_any_negative_bound_even_where_it_vanishes() -> None:
@@ -204,9 +208,9 @@ def test_the_best_bound_is_within_its_tolerance_of_the_sampled_worst() -> None:
     found = best_bound(Heli4(), CYLINDER, "internal_determinant", 1e-3)
     assert found is not None
     assert found.certificate.status == "proved"
-    assert 0.0 <= found.sampled - found.certificate.at_least <= 1e-3 * (1 + 1e-9)
+    assert 0.0 <= found.sampled - found.certificate.bound.value <= 1e-3 * (1 + 1e-9)
     independent = worst_poses(Heli4(), CYLINDER, "internal_determinant", about=50_000).value
-    assert found.certificate.at_least <= independent <= found.sampled + 1e-9
+    assert found.certificate.bound.value <= independent <= found.sampled + 1e-9
 
 
 def test_a_best_bound_beyond_the_allowance_is_the_closest_that_is_not() -> None:
@@ -214,7 +218,7 @@ def test_a_best_bound_beyond_the_allowance_is_the_closest_that_is_not() -> None:
     tolerance, most_boxes = 2e-3, 144_000
     found = best_bound(Heli4(), CYLINDER, "J_q", tolerance, most_boxes=most_boxes)
     assert found is not None
-    doublings = math.log2((found.sampled - found.certificate.at_least) / tolerance)
+    doublings = math.log2((found.sampled - found.certificate.bound.value) / tolerance)
     assert doublings == pytest.approx(round(doublings), abs=1e-6)
     assert round(doublings) >= 1
     nearer = found.sampled - tolerance * 2.0 ** (round(doublings) - 1)

@@ -24,7 +24,7 @@ from design import (
     save_certificate,
 )
 from design.certificates.box_tree import LEFT, OUTSIDE, PROVED
-from kinematics import GoughStewart, Heli4, InvalidValue, Mechanism, Peppermill, Redundant3T1R
+from kinematics import Bound, GoughStewart, Heli4, InvalidValue, Mechanism, Peppermill, Redundant3T1R
 from tests.design.certificates.auditor import Auditor
 from tests.sizes import few_of
 
@@ -78,7 +78,7 @@ def test_a_certificate_stands_its_replay_and_its_audit(
 
 def test_the_audit_itself_refuses_a_false_box() -> None:
     """The certificate's boxes with a bound above the true worst value."""
-    false = replace(_proved(), at_least=0.9)
+    false = replace(_proved(), bound=Bound(0.9))
     auditor = Auditor(false, Heli4())
     boxes = auditor.boxes(np.random.default_rng(1), 40)
     assert not all(auditor.proves(low, high, depth=1) for low, high in boxes)
@@ -104,7 +104,7 @@ def test_a_file_keeps_every_bit(tmp_path: Path) -> None:
         "digest",
         "conditions",
         "margin",
-        "at_least",
+        "bound",
         "bounds",
         "characteristic_length",
         "version",
@@ -121,7 +121,7 @@ def test_a_refutation_is_kept_and_replayed(tmp_path: Path) -> None:
     read = load_certificate(tmp_path / "no.npz")
     assert replay(read, Heli4()) == 1
     with pytest.raises(BrokenCertificate, match="does not refute"):
-        replay(replace(read, at_least=0.4), Heli4())
+        replay(replace(read, bound=Bound(0.4)), Heli4())
 
 
 @pytest.mark.parametrize(
@@ -168,7 +168,7 @@ def test_a_number_of_boxes_that_its_list_does_not_have_is_caught() -> None:
 
 
 def test_a_raised_bound_or_a_grown_region_is_caught() -> None:
-    for change in ({"at_least": 0.43}, {"region": Cylinder(radius=0.8, z=(-0.8, -0.6), theta=(-PI, PI))}):
+    for change in ({"bound": Bound(0.43)}, {"region": Cylinder(radius=0.8, z=(-0.8, -0.6), theta=(-PI, PI))}):
         with pytest.raises(BrokenCertificate):
             replay(replace(_proved(), **change), Heli4())  # type: ignore[arg-type]
 

@@ -24,6 +24,7 @@ from design import (
 from kinematics import MECHANISMS, GoughStewart, Heli4, InvalidValue, Mechanism, Planar3RRR, Redundant3T1R
 from kinematics.evaluation.interval_interpreter import operate
 from kinematics.evaluation.program import Op
+from tests.design.words import bound_of, trivial
 from tests.sizes import few_of
 
 LIMITED = {Redundant3T1R: Redundant3T1R.Ranges(joints=((-3.0, 3.0), *[(-math.inf, math.inf)] * 5))}
@@ -55,15 +56,15 @@ CASES = [(robot, margin, region) for robot, region in REGIONS if region is not N
 def test_a_region_that_a_limb_cannot_reach_refutes_every_margin_and_boxes_never_prove_it(
     robot: Mechanism, margin: str, region: Box, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    lowest = 0.0 if margin == "reach" else -1e3
-    for at_least in (lowest, 1e-9):
-        found = certify(robot, region, margin, at_least=at_least, most_boxes=300)
+    weakest = bound_of(robot, margin, 0.0) if margin == "reach" else trivial(robot, margin, 1e3)
+    for asked in (weakest, bound_of(robot, margin, 1e-9)):
+        found = certify(robot, region, margin, **asked, most_boxes=300)
         assert found.status == "refuted"
         assert found.counterexample is not None
         assert found.within_reach == bool(robot.margin("reach", found.counterexample) >= 0.0)
-        assert at_least > 0.0 or not found.within_reach
+        assert asked is not weakest or not found.within_reach
     monkeypatch.setattr("design.certificates.refutation.Refuter.refutation", lambda *_: None)
-    assert certify(robot, region, margin, at_least=lowest, most_boxes=300).status == "undecided"
+    assert certify(robot, region, margin, **weakest, most_boxes=300).status == "undecided"
 
 
 def test_arms_too_short_for_the_region_refute_the_determinant_of_the_other_two() -> None:

@@ -138,7 +138,7 @@ def test_counting_nodes_at_multiples_of_10_mm_gives_every_printed_digit_of_table
 def test_every_section_of_a_cylinder_holds_its_worst_pose(axes: tuple[str, str]) -> None:
     robot = Heli4()
     chart = map_of(index_of(robot, "fvi"), Section(HELI, axes), NAMES, (17, 17))
-    value, pose = chart.lowest
+    value, pose = chart.worst
     assert math.isclose(value, worst_poses(robot, HELI, "fvi", about=50_000).value, rel_tol=1e-9)
     assert HELI.contains(pose[None], NAMES).all()
     assert math.isclose(float(robot.fvi(pose)), value, rel_tol=1e-12)
@@ -178,7 +178,7 @@ def test_what_is_out_of_reach_is_no_part_of_the_area() -> None:
     section, robot = Section(region, ("x", "y")), Heli4()
     chart = map_of(index_of(robot, "fvi"), section, NAMES, (65, 9))
     assert np.isnan(chart.values).any()
-    assert chart.lowest[0] == -np.inf
+    assert chart.worst[0] == -np.inf
     reach = integrals(map_of(index_of(robot, "reach"), section, NAMES, (257, 33)), 0.0).area
     everything = integrals(map_of(index_of(robot, "fvi"), section, NAMES, (257, 33)), None).area
     assert everything <= reach
@@ -223,7 +223,7 @@ def test_a_plane_out_of_reach_is_empty_and_so_is_its_boundary() -> None:
     found = level_set(index_of(Heli4(), "fvi"), Section(beyond, ("x", "y")), NAMES, None)
     assert found.figures.area == 0.0
     assert found.boundary == []
-    assert found.map.lowest[0] == -np.inf
+    assert found.map.worst[0] == -np.inf
 
 
 def test_figures_that_do_not_stand_still_say_how_far_they_still_move(monkeypatch: pytest.MonkeyPatch) -> None:

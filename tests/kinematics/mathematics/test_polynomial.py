@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from kinematics.evaluation import threads
-from kinematics.mathematics.polynomial_roots import real_roots
+from kinematics.mathematics.polynomials import real_roots
 
 
 def known(row):

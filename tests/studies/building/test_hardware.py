@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kinematics import MECHANISMS, DriveTrain, GoughStewart, Heli4
+from kinematics import MECHANISMS, GoughStewart, Heli4
 from kinematics.machine.bodies import UNIFORM
 from studies.building.hardware import hardware_tables
 from studies.building.load import load_study
@@ -44,7 +44,9 @@ joints_deg = [0, 200]
 passive_deg = [50, 45]
 """
 GIVEN = re.sub(r"\[optimise\].*?(?=\[\[requirement)", "", SMALL, flags=re.DOTALL)
-DRIVES = DriveTrain(gear_ratio=5.0, motor_inertia=1e-4, coulomb=(1.0, 1.0, 2.0, 2.0), stiffness=1e5)
+DRIVES = dataclasses.replace(
+    Heli4.Inertia().drive_train, gear_ratio=5.0, motor_inertia=1e-4, coulomb=(1.0, 1.0, 2.0, 2.0)
+)
 INERTIA = Heli4.Inertia(arm_mass=1.1, plate_masses=(0.5, 0.6), rod_middle=2 / 3, drive_train=DRIVES)
 RANGES = Heli4.Ranges(joints=(0.0, math.radians(200)), passive=(math.radians(50), math.radians(45)))
 

@@ -30,7 +30,7 @@ def test_a_run_writes_optimum_report_and_set_points_and_says_so(
     data = json.loads(ended.stdout)
     assert data["worst"]["fvi"]["value"] > data["prototype"]["fvi"]
     certificates = {"certificates/internal_determinant.npz", "certificates/J_q.npz"}
-    of_the_run = {"optimum.toml", *certificates, "report.html", "mechanism.png", "cycle.csv"}
+    of_the_run = {"optimum.toml", *certificates, "report.html", "mechanism.png", "cycle.csv", "frame_reaction.csv"}
     assert {Path(f) for f in data["files"]} == {folder / "out" / f for f in of_the_run} | {
         folder / f for f in ("optimum.toml", *certificates)
     }

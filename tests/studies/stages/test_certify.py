@@ -101,7 +101,7 @@ def test_a_forged_certificate_fails_though_its_digest_agrees(
 def test_a_bound_raised_in_both_files_is_not_proved(small_run: SmallRun, outcome: Outcome, tmp_path: Path) -> None:
     optimum = copy_of(small_run[0], tmp_path)
     file = tmp_path / "certificates" / "J_q.npz"
-    claimed = load_certificate(file).at_least
+    claimed = load_certificate(file).bound.value
     raised = outcome.worst["internal_determinant"].value + 1.0
     forged(file, lambda c: replace(c, at_least=raised))
     optimum.write_text(optimum.read_text().replace(f"at_least = {claimed}", f"at_least = {raised}"))

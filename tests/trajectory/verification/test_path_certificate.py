@@ -56,7 +56,7 @@ def test_a_leg_too_short_for_a_few_hundredths_of_a_millimetre_is_found_between_s
     with pytest.raises(PathRefused) as caught:
         certify_path(robot, path)
     error = caught.value
-    assert (error.margin, error.limb, error.proved) == ("joint_travel", 1, True)
+    assert (error.margin, error.place, error.proved) == ("joint_travel", "the lower end of q1", True)
     assert error.at == pytest.approx(nearest, abs=2e-5)
     assert robot.margin("joint_travel", np.array(error.pose)) < 0.0
     assert -1e-9 <= error.bound <= 0.0
@@ -68,7 +68,7 @@ def test_a_singular_pose_on_the_way_is_found() -> None:
     with pytest.raises(PathRefused, match="det_J_x") as caught:
         certify_path(GoughStewart(ranges=GoughStewart.Ranges(joints=(0.1, 2.0))), path)
     assert caught.value.proved
-    assert caught.value.limb is None
+    assert caught.value.place is None
 
 
 def test_a_margin_that_touches_zero_is_undecided_not_proved() -> None:

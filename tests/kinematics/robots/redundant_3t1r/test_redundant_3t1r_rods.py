@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq, lsq_linear, minimize
 
 from kinematics import Redundant3T1R
-from kinematics.mathematics.segment_distance import segment_distances, segment_gap_symbolic
+from kinematics.mathematics.segment_distance import nearest_symbolic, segment_distances
 from tests.kinematics.robots.redundant_3t1r.redundant_by_hand import (
     NINE_ANGLES,
     ByHand,
@@ -196,7 +196,7 @@ def test_arm_distances_are_those_of_segments_by_hand(robot):
 
 def symbolic_distance():
     one, two = ca.SX.sym("one", 3, 2), ca.SX.sym("two", 3, 2)
-    return ca.Function("distance", [one, two], [ca.norm_2(segment_gap_symbolic(one, two))])
+    return ca.Function("distance", [one, two], [ca.norm_2(nearest_symbolic(one, two)[0])])
 
 
 SYMBOLIC = symbolic_distance()

@@ -1,4 +1,4 @@
-"""Real roots of many polynomials at once, exact enough to close a loop to rounding."""
+"""Many polynomials at once: their products, and their real roots, exact enough to close a loop to rounding."""
 
 from __future__ import annotations
 
@@ -8,6 +8,14 @@ import numpy as np
 from kinematics.evaluation import over_spans
 
 _EPS = float(np.finfo(float).eps)
+
+
+def product(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(k, a + 1) and (k or 1, b + 1) coefficients -> (k, a + b + 1), row by row."""
+    result = np.zeros((len(first), first.shape[1] + second.shape[1] - 1))
+    for i in range(second.shape[1]):
+        result[:, i : i + first.shape[1]] += first * second[:, i : i + 1]
+    return result
 
 
 def real_roots(coefficients: np.ndarray, most: int | None = None) -> np.ndarray:

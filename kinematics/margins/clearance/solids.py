@@ -1,0 +1,220 @@
+"""The solids that a robot's clearance is about: shapes of its members, of its base, and of its surroundings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+from typing import NamedTuple
+
+import casadi as ca
+import numpy as np
+
+from kinematics.errors import InvalidValue
+from kinematics.machine import Member, Obstacle, PayloadHull, Plate, Tube
+from kinematics.mathematics import Convex, signed_distance
+from kinematics.model import Mechanism
+
+_BASE = "base"  # the joint of all that does not move
+_HULL = "payload"
+_ROUNDING = 1e-12  # of the robot's size
+_SIDES = 8  # of the polygon around a flat payload
+
+
+class Solid(NamedTuple):
+    """All points within `radius` of `core`, at a pose. `number` is its place in the list of solids."""
+
+    number: int
+    member: Member
+    core: Convex
+    radius: ca.SX
+
+    @property
+    def length(self) -> ca.SX:
+        """Of its first edge [m]."""
+        return ca.norm_2(self.core.corners[:, 1] - self.core.corners[:, 0])
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is no part of the base."""
+        return _BASE not in self.member.joints
+
+
+class Pair(NamedTuple):
+    """Two solids that must not touch."""
+
+    one: Solid
+    two: Solid
+
+    @property
+    def place(self) -> str:
+        """The names of both members."""
+        return f"{self.one.member.name} and {self.two.member.name}"
+
+    @property
+    def distance(self) -> ca.SX:
+        """Between their surfaces [m]; minus the depth if they intersect."""
+        return signed_distance(self.one.core, self.two.core) - self.thick
+
+    @property
+    def thick(self) -> ca.SX:
+        """The sum of the radii [m]."""
+        return self.one.radius + self.two.radius
+
+
+class Walled(NamedTuple):
+    """A solid that must stay on one side of walls: side * (coordinate - at) >= 0 for each (coordinate, at, side)."""
+
+    solid: Solid
+    name: str
+    walls: tuple[tuple[int, float, float], ...]
+
+    @property
+    def place(self) -> str:
+        """The names of the member and of the walls."""
+        return f"{self.solid.member.name} and {self.name}"
+
+    @property
+    def distances(self) -> ca.SX:
+        """(k,) of each corner from each wall [m]; minus the depth of those beyond it."""
+        corners = self.solid.core.corners
+        return ca.vertcat(*(side * (corners[i, :].T - at) for i, at, side in self.walls)) - self.solid.radius
+
+
+def rooms(robot: Mechanism) -> tuple[list[Pair], list[Walled]]:
+    """Everything that must not touch, at a pose.
+
+    Raises:
+        InvalidValue: a member joins nothing, or no member is the mechanism's `tool_member`.
+    """
+    model, around = robot.model(), robot.surroundings
+    members = robot.members(model.pose, model.joints, model.g)
+    members += robot.base_members(model.pose, model.joints, model.g)
+    _require_joined(robot, members)
+    hull = [] if around.payload_hull is None else [_hull_member(robot, around.payload_hull)]
+    solids = _solids(robot, [*members, *hull])
+    boxes = [
+        Solid(len(solids) + i, Member(box.name, (_BASE,), "", ()), Convex.box(box.low, box.high), ca.SX(0))
+        for i, box in enumerate(box for box in around.obstacles if not box.inside)
+    ]
+    held = {_HULL, robot.tool_member}
+    pairs = [
+        Pair(one, two)
+        for one, two in combinations([*solids, *boxes], 2)
+        if not set(one.member.joints) & set(two.member.joints) and {one.member.name, two.member.name} != held
+    ]
+    moving = [solid for solid in solids if solid.moves]
+    return pairs, [Walled(solid, name, walls) for name, walls in _walls(robot) for solid in moving]
+
+
+class Lowest(NamedTuple):
+    """The lowest point of the base: the member that it belongs to, and its height [m]."""
+
+    member: str
+    height: float
+
+
+def lowest_of_base(robot: Mechanism) -> Lowest | None:
+    """The lowest point of what belongs to the base, at home; None if the mechanism names no such member."""
+    model = robot.model()
+    solids = [
+        solid for solid in _solids(robot, robot.base_members(model.pose, model.joints, model.g)) if not solid.moves
+    ]
+    if not solids:
+        return None
+    heights = _at_home(robot, [ca.mmin(solid.core.corners[2, :]) - solid.radius for solid in solids])
+    lowest = int(np.argmin(heights))
+    return Lowest(solids[lowest].member.name, float(heights[lowest]))
+
+
+def hull_depth(robot: Mechanism) -> float:
+    """How deep the payload's hull is inside the member that carries it, at home [m]; 0 if it is not."""
+    hull = robot.surroundings.payload_hull
+    if hull is None:
+        return 0.0
+    holders = [m for m in _members(robot) if m.name == robot.tool_member]
+    *held, of_hull = _solids(robot, [*holders, _hull_member(robot, hull)])
+    depth = -float(np.min(_at_home(robot, [Pair(of_hull, one).distance for one in held])))
+    return max(depth, 0.0) if depth > _ROUNDING * robot.geometry.size else 0.0
+
+
+def _at_home(robot: Mechanism, expressions: Sequence[ca.SX]) -> np.ndarray:
+    model = robot.model()
+    function = ca.Function("at_home", [model.pose, model.geometry], [ca.vertcat(*expressions)])
+    return np.array(function(robot.home, robot.geometry.vector()))[:, 0]
+
+
+def _solids(robot: Mechanism, members: Sequence[Member]) -> list[Solid]:
+    """All shapes of the members, their points from one evaluation, so that equal terms are one node."""
+    shapes = [(member, shape) for member in members for shape in member.shapes]
+    if not shapes:
+        return []
+    points = [s.outline if isinstance(s, Plate) else ca.horzcat(s.start, s.end) for _, s in shapes]
+    at_pose = ca.cse(robot.model().at_pose(ca.horzcat(*points)))
+    found: list[Solid] = []
+    first = 0
+    for (member, shape), corners in zip(shapes, points, strict=True):
+        placed = at_pose[:, first : first + corners.shape[1]]
+        first += corners.shape[1]
+        if isinstance(shape, Plate):
+            found.append(Solid(len(found), member, Convex.polygon(placed), shape.thickness / 2))
+        else:
+            found.append(Solid(len(found), member, Convex(placed), shape.radius))
+    return found
+
+
+def _hull_member(robot: Mechanism, hull: PayloadHull) -> Member:
+    """The payload as a capsule, or as a plate if it is flat."""
+    if robot.tool_member not in (names := [m.name for m in _members(robot)]):
+        raise InvalidValue(f"{type(robot).__name__} tool_member", robot.tool_member, f"one of {', '.join(names)}")
+    point, axes = _tool_frame(robot)
+    half = (hull.high - hull.low) / 2
+    if half >= hull.radius:
+        low, high = (point + axes[:, 2] * z for z in (hull.low + hull.radius, hull.high - hull.radius))
+        shape: Tube | Plate = Tube(low, high, ca.SX(hull.radius), ca.SX(hull.radius))
+    else:
+        angles = (np.arange(_SIDES) + 0.5) * 2 * np.pi / _SIDES
+        around = (hull.radius - half) / np.cos(np.pi / _SIDES) * np.array([np.cos(angles), np.sin(angles)])
+        level = np.full((1, _SIDES), hull.low + half)
+        shape = Plate(ca.repmat(point, 1, _SIDES) + axes @ ca.DM(np.vstack([around, level])), ca.SX(2 * half))
+    return Member(_HULL, ("tool",), "", (shape,))
+
+
+def _members(robot: Mechanism) -> list[Member]:
+    model = robot.model()
+    return robot.members(model.pose, model.joints, model.g)
+
+
+def _tool_frame(robot: Mechanism) -> tuple[ca.SX, ca.SX]:
+    """The tool point (3,), and the axes of the tool (3, 3); a turn about its z axis is left out: the hull is round."""
+    pose, names = robot.model().pose, robot.pose_names
+    point = ca.vertcat(*(pose[names.index(name)] if name in names else 0 for name in ("x", "y", "z")))
+    if "roll" not in names:
+        return point, ca.SX.eye(3)
+    (cr, sr), (cp, sp), (cy, sy) = (
+        (ca.cos(pose[i]), ca.sin(pose[i])) for i in map(names.index, ("roll", "pitch", "yaw"))
+    )
+    about_z = ca.vertcat(ca.horzcat(cy, -sy, 0), ca.horzcat(sy, cy, 0), ca.horzcat(0, 0, 1))
+    about_y = ca.vertcat(ca.horzcat(cp, 0, sp), ca.horzcat(0, 1, 0), ca.horzcat(-sp, 0, cp))
+    about_x = ca.vertcat(ca.horzcat(1, 0, 0), ca.horzcat(0, cr, -sr), ca.horzcat(0, sr, cr))
+    return point, about_z @ about_y @ about_x
+
+
+def _walls(robot: Mechanism) -> list[tuple[str, tuple[tuple[int, float, float], ...]]]:
+    """The name and the walls of the floor, and of each box that the robot must stay inside."""
+    around = robot.surroundings
+    found = [] if around.floor is None else [("the floor", ((2, around.floor, 1.0),))]
+    return found + [(box.name, _faces(box)) for box in around.obstacles if box.inside]
+
+
+def _faces(box: Obstacle) -> tuple[tuple[int, float, float], ...]:
+    lower = [(i, at, 1.0) for i, at in enumerate(box.low)]
+    upper = [(i, at, -1.0) for i, at in enumerate(box.high)]
+    return (*lower, *upper)
+
+
+def _require_joined(robot: Mechanism, members: Sequence[Member]) -> None:
+    for member in members:
+        others = {joint for other in members if other is not member for joint in other.joints} | {_BASE}
+        if not set(member.joints) & others:
+            what = f"{type(robot).__name__} member {member.name!r}, joints"
+            raise InvalidValue(what, member.joints, 'a joint that another member has too, or "base"')
