@@ -50,7 +50,7 @@ def test_its_gradient_by_the_geometry_is_that_of_differences(robot: Mechanism) -
     model, rng = robot.model(), np.random.default_rng(1)
     pose = robot.home + 0.02 * rng.standard_normal(len(robot.home))
     measure = Measure(robot.fvi_bounds, robot.characteristic_length)
-    margin = robot.margins["stiffness"].smallest(robot, measure)
+    margin = robot.margins["stiffness"].components(robot, measure)
     function = ca.Function("margin", [model.pose, model.geometry], [margin, ca.gradient(margin, model.geometry)])
     numbers = robot.geometry.vector()
     direction = rng.standard_normal(len(numbers)) * np.abs(numbers)
@@ -64,7 +64,7 @@ def test_its_gradient_by_the_geometry_is_that_of_differences(robot: Mechanism) -
 def test_where_two_directions_are_equally_weak_the_gradient_is_a_number(robot: Mechanism) -> None:
     """On the axis, x and y are alike: any mean of their gradients will do, but not NaN."""
     model = robot.model()
-    margin = robot.margins["stiffness"].smallest(robot, Measure(robot.fvi_bounds, robot.characteristic_length))
+    margin = robot.margins["stiffness"].components(robot, Measure(robot.fvi_bounds, robot.characteristic_length))
     gradient = ca.Function("gradient", [model.pose, model.geometry], [ca.gradient(margin, model.geometry)])
     found = np.array(gradient(robot.home, robot.geometry.vector())).ravel()
     assert np.isfinite(found).all()
