@@ -4,7 +4,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from design import Box, certify, worst_poses
+from design import Box, certify, replay, worst_poses
 from kinematics import MECHANISMS, Delta, Heli4, Measure, Mechanism, Planar3RPR, Planar3RRR
 from kinematics.mathematics import singular_values, smallest_eigenvalue
 from tests.sizes import few_of
@@ -28,7 +28,9 @@ def test_it_is_proved_up_to_its_worst_value_and_refuted_beyond(robot: Mechanism,
     home = robot.home + 1e-3 * np.arange(1, len(robot.home) + 1)
     region = Box(**{n: (float(v) - 5e-3, float(v) + 5e-3) for n, v in zip(robot.pose_names, home, strict=True)})
     worst = worst_poses(robot, region, margin, about=300, descents=8).value
-    assert certify(robot, region, margin, at_least=0.95 * worst).status == "proved"
+    proof = certify(robot, region, margin, at_least=0.95 * worst)
+    assert proof.status == "proved"
+    assert replay(proof, robot, region=region, margin=margin, at_least=0.95 * worst) >= 1
     assert certify(robot, region, margin, at_least=1.001 * worst).status == "refuted"
 
 
