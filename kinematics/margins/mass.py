@@ -14,7 +14,6 @@ class Mass(Margin):
     sense = -1
     records = ("inertia", "structure")
     unit = "kg"
-    of_inertia = True
     words = "mass of all moving bodies, without a payload"
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002

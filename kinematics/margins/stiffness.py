@@ -6,6 +6,7 @@ Each of these margins holds some freedoms of the platform and leaves the others 
 from __future__ import annotations
 
 from abc import abstractmethod
+from functools import partial
 from typing import ClassVar, NamedTuple
 
 import casadi as ca
@@ -13,7 +14,7 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.dynamics import stiffness_symbolic, transmission_at_pose
-from kinematics.mathematics import near_inverse, row_sums, smallest_eigenvalue
+from kinematics.mathematics import root_inverse, row_sums, smallest_eigenvalue
 from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
 
 _SURE = 1e-9  # by what a row sum, about 1 in the middle of a box, must be above 0
@@ -86,23 +87,25 @@ class WeakestDirection(Margin):
         return ToShow(v.T @ matrix @ v, v, matrix, _weakest)
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
-        """`Pencil.balance` is regular everywhere, and the margin is above the bound at one pose of the region.
+        """The matrix Q of `Pencil.balance` has as many eigenvalues below 0 as C has rows, k, and all others above.
 
-        The Schur complement of -C in it is K - x diag(0, E). So that is regular too, and none of its eigenvalues, all
-        above 0 at one pose, can change its sign in a connected region. A matrix Q is regular where D^-1 P Q D is, with
-        any P and any diagonal D; and that is, by Gershgorin, where the sum of each row, the moduli beside the diagonal
-        negative, is above 0. P is the inverse of Q in the middle of a box; D makes the rows alike.
+        By Sylvester K - x diag(0, E), the Schur complement of its part -C, is then positive definite, and so is what
+        the free freedoms leave of it: all eigenvalues are above x. Any regular T = [[A, G], [0, B]] makes a matrix
+        P = T diag(-1, 1) T^T with k eigenvalues below 0; so has its inverse. If in D^-1 P Q D, for any diagonal D, each
+        diagonal entry exceeds the sum of the moduli beside it, so it does in all means of this matrix and the identity,
+        D^-1 P P^-1 D. Then none of the means of Q and P^-1 is singular, and Q has as many eigenvalues below 0 as P^-1.
+        In the middle of a box P is the inverse of Q; D makes the rows alike.
         """
         pencil = self.pencil(robot) if positive else None
         if pencil is None:
             return super().to_show(robot, claim, inside, positive)
-        matrix = pencil.balance(self.eigenvalue(claim.bound))
+        matrix, k = pencil.balance(self.eigenvalue(claim.bound)), pencil.compliance.shape[0]
         n = matrix.shape[0]
         scaling = ca.SX.sym("scaling", n, n + 1)
-        left, right = scaling[:, :n], ca.diag(scaling[:, n])
-        there = float(robot.margin(self.name, inside))
-        rows = row_sums(left @ (matrix @ right)) - _SURE
-        return ToShow(ca.vertcat(rows, there * (1 - _SURE) - claim.bound), scaling, matrix, _preconditioner)
+        a, g, b, weight = scaling[:k, :k], scaling[:k, k:n], scaling[k:, k:n], scaling[:, n]
+        inverse = ca.vertcat(ca.horzcat(g @ g.T - a @ a.T, g @ b.T), ca.horzcat(b @ g.T, b @ b.T))
+        rows = row_sums(ca.diag(1 / weight) @ (inverse @ (matrix @ ca.diag(weight)))) - _SURE
+        return ToShow(rows, scaling, matrix, partial(_preconditioner, k))
 
 
 class _Directional(WeakestDirection):
@@ -166,21 +169,27 @@ class InternalStiffness(_Directional):
         return [], _internal(robot, freedoms)
 
 
-def _preconditioner(matrices: Array) -> Array:
-    """(k, n, n) Q -> (k, n, n + 1) D^-1 Q^-1, and in a last column D: Perron's vector of |Q^-1| |Q|, to a few digits.
+def _preconditioner(k: int, matrices: Array) -> Array:
+    """(p, n, n) Q -> (p, n, n + 1) T of `to_show` and, in a last column, D: Perron's vector of |Q^-1| |Q|.
 
-    With it the rows of D^-1 Q^-1 dQ D are alike for a change dQ of the same share of each entry.
+    With this D the rows of D^-1 Q^-1 dQ D are alike for a change dQ of the same share of each entry of Q.
     """
     usable = np.isfinite(matrices).all(axis=(1, 2))
-    eye = np.eye(matrices.shape[1])
-    matrices = np.where(usable[:, None, None], matrices, eye)
-    size = np.sqrt(np.abs(matrices).max(axis=2))  # symmetric, so that rows and columns alike are divided by it
-    inverse = near_inverse(matrices / size[:, :, None] / size[:, None, :]) / size[:, :, None] / size[:, None, :]
-    spread, weight = np.abs(inverse) @ np.abs(matrices), 1 / size
+    usual = np.diag(np.where(np.arange(matrices.shape[1]) < k, -1.0, 1.0))
+    matrices = np.where(usable[:, None, None], matrices, usual)
+    wrenches, a = matrices[:, k:, :k], root_inverse(-matrices[:, :k, :k])
+    forces = a @ (np.swapaxes(a, 1, 2) @ np.swapaxes(wrenches, 1, 2))  # C^-1 W^T
+    b = root_inverse(wrenches @ forces + matrices[:, k:, k:])
+    result = np.zeros((len(matrices), matrices.shape[1], matrices.shape[1] + 1))
+    result[:, :k, :k], result[:, :k, k:-1], result[:, k:, k:-1] = a, forces @ b, b
+    factor = result[:, :, :-1]
+    inverse = np.abs(factor @ usual @ np.swapaxes(factor, 1, 2))
+    weight = np.sqrt(np.einsum("pii->pi", inverse))
     for _ in range(_ITERATIONS):
-        weight = (spread @ weight[:, :, None])[:, :, 0]
+        weight = (inverse @ (np.abs(matrices) @ weight[:, :, None]))[:, :, 0]
         weight /= weight.max(axis=1, keepdims=True)
-    return np.concatenate([inverse / weight[:, :, None], weight[:, :, None]], axis=2)
+    result[:, :, -1] = weight
+    return result
 
 
 def _weakest(matrices: Array) -> Array:

@@ -90,7 +90,6 @@ class Margin(ABC):
         holds_on_paths: whether it must be above 0 at every pose of a path.
         shown_on_paths: whether the proof along a path needs `to_show`, as its components' own bounds are too wide.
         of_jacobians: whether it depends only on J_x and |J_q|, for any robot.
-        of_inertia: whether it depends on masses or drives.
         beyond_reach: whether it has a value even where a limb cannot reach.
         of_members: whether it is the safety factor of the members, of which a cycle's motion has its own too.
         singularity: the kind of singularity where it is 0; empty if it shows none.
@@ -104,7 +103,6 @@ class Margin(ABC):
     holds_on_paths: ClassVar[bool] = False
     shown_on_paths: ClassVar[bool] = False
     of_jacobians: ClassVar[bool] = False
-    of_inertia: ClassVar[bool] = False
     beyond_reach: ClassVar[bool] = False
     of_members: ClassVar[bool] = False
     singularity: ClassVar[str] = ""

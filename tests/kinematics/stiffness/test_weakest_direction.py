@@ -4,7 +4,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from design import Box, certify, worst_poses
+from design import Box, certify, replay, worst_poses
 from kinematics import MECHANISMS, Delta, Heli4, Measure, Mechanism, Planar3RPR, Planar3RRR
 from kinematics.mathematics import singular_values, smallest_eigenvalue
 from tests.sizes import few_of
@@ -28,7 +28,9 @@ def test_it_is_proved_up_to_its_worst_value_and_refuted_beyond(robot: Mechanism,
     home = robot.home + 1e-3 * np.arange(1, len(robot.home) + 1)
     region = Box(**{n: (float(v) - 5e-3, float(v) + 5e-3) for n, v in zip(robot.pose_names, home, strict=True)})
     worst = worst_poses(robot, region, margin, about=300, descents=8).value
-    assert certify(robot, region, margin, at_least=0.95 * worst).status == "proved"
+    proof = certify(robot, region, margin, at_least=0.95 * worst)
+    assert proof.status == "proved"
+    assert replay(proof, robot, region=region, margin=margin, at_least=0.95 * worst) >= 1
     assert certify(robot, region, margin, at_least=1.001 * worst).status == "refuted"
 
 
@@ -50,7 +52,7 @@ def test_its_gradient_by_the_geometry_is_that_of_differences(robot: Mechanism) -
     model, rng = robot.model(), np.random.default_rng(1)
     pose = robot.home + 0.02 * rng.standard_normal(len(robot.home))
     measure = Measure(robot.fvi_bounds, robot.characteristic_length)
-    margin = robot.margins["stiffness"].smallest(robot, measure)
+    margin = robot.margins["stiffness"].components(robot, measure)
     function = ca.Function("margin", [model.pose, model.geometry], [margin, ca.gradient(margin, model.geometry)])
     numbers = robot.geometry.vector()
     direction = rng.standard_normal(len(numbers)) * np.abs(numbers)
@@ -64,7 +66,7 @@ def test_its_gradient_by_the_geometry_is_that_of_differences(robot: Mechanism) -
 def test_where_two_directions_are_equally_weak_the_gradient_is_a_number(robot: Mechanism) -> None:
     """On the axis, x and y are alike: any mean of their gradients will do, but not NaN."""
     model = robot.model()
-    margin = robot.margins["stiffness"].smallest(robot, Measure(robot.fvi_bounds, robot.characteristic_length))
+    margin = robot.margins["stiffness"].components(robot, Measure(robot.fvi_bounds, robot.characteristic_length))
     gradient = ca.Function("gradient", [model.pose, model.geometry], [ca.gradient(margin, model.geometry)])
     found = np.array(gradient(robot.home, robot.geometry.vector())).ravel()
     assert np.isfinite(found).all()
