@@ -73,7 +73,15 @@ def _bench_table(benchmarks: list[dict[str, Any]]) -> str:
     for what in ("inverse", "forward", "fvi", "stiffness"):
         ours, peer = median[f"test_poses[{what}-linkwright]"], median[f"test_poses[{what}-numpy]"]
         lines.append(f"| {what} | {1e3 * ours:.1f} ms | {1e3 * peer:.1f} ms | {peer / ours:.1f} |")
-    lines += ["", *_bulk_rows(median, count), "", "| job | time |", "| --- | --- |"]
+    lines += [
+        "",
+        *_bulk_rows(median, count),
+        "",
+        *_clearance_rows(median, extra),
+        "",
+        "| job | time |",
+        "| --- | --- |",
+    ]
     poses, rounds = extra["test_one_nlp"]["poses"], extra["test_whole_synthesis"]["rounds"]
     lines.append(f"| one max-min NLP over {poses} poses | {median['test_one_nlp']:.2f} s |")
     lines.append(
@@ -99,6 +107,18 @@ def _bulk_rows(median: dict[str, float], count: int) -> list[str]:
         peer = median.get(f"test_fvi[{name}-numpy]")
         cells += [f"{1e3 * peer:.0f} ms", f"{peer / ours:.0f}"] if peer else ["", ""]
         lines.append(f"| {name} | {' | '.join(cells)} |")
+    return lines
+
+
+def _clearance_rows(median: dict[str, float], extra: dict[str, dict[str, Any]]) -> list[str]:
+    """The clearance of robots of capsules against batched numpy and FCL, per pose."""
+    lines = ["| clearance, per pose | Linkwright | batched numpy | over ours | FCL | over ours |"]
+    lines.append("| --- " * 6 + "|")
+    for name in ("Heli4", "Redundant3T1R", "Peppermill"):
+        tests = (f"test_clearance[{name}-{way}]" for way in ("linkwright", "numpy", "fcl"))
+        ours, *peers = (1e6 * median[test] / extra[test]["poses"] for test in tests)
+        cells = [cell for peer in peers for cell in (f"{peer:.3g} us", f"{peer / ours:.0f}")]
+        lines.append(f"| {name} | {ours:.3g} us | {' | '.join(cells)} |")
     return lines
 
 
