@@ -1,0 +1,1 @@
+"""Timed tests of pytest-benchmark."""
