@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import casadi as ca
@@ -22,6 +22,7 @@ import numpy as np
 from design.claims import reach_rows
 from design.requirement import Bounds, Requirement, SumLimit
 from design.sampling import WorstPoses
+from design.synthesis.near_components import NearComponents
 from kinematics import Array, FviBounds, Mechanism, Value
 
 _DECADES = 10.0  # if a variable's bounds differ by this factor, a logarithmic scale is used
@@ -168,12 +169,34 @@ def solve(
     started = time.perf_counter()
     if sizes is None:
         sizes = problem.sizes(problem.robot_with(start), poses)
+    near, iterations = NearComponents(problem, poses, start), 0
+    while True:
+        left = seconds - (time.perf_counter() - started)
+        answer = _solved(problem, poses, start, sizes, near.kept, left)
+        iterations, taken = iterations + answer.iterations, time.perf_counter() - started
+        more = near.grown(answer.values)
+        if not more or taken >= seconds:
+            return replace(answer, converged=answer.converged and not more, iterations=iterations, seconds=taken)
+        start = answer.values
+
+
+def _solved(
+    problem: Problem,
+    poses: Array,
+    start: Array,
+    sizes: Mapping[str, float],
+    kept: Mapping[str, list[int]],
+    seconds: float,
+) -> NlpSolution:
+    """With the `kept` components of each requirement only."""
+    started = time.perf_counter()
     unit, t = ca.MX.sym("unit", len(start)), ca.MX.sym("t")
     geometry = ca.MX(problem.robot.geometry.vector())
     for place, value in zip(problem.places(), problem.from_unit(unit), strict=True):
         geometry[place] = value
     rows = {
-        f"{r.margin} {r.bound}": _margin(problem, r.margin, poses, geometry, sizes, r.bound.value) - problem.spare
+        f"{r.margin} {r.bound}": _margin(problem, r.margin, poses, geometry, sizes, r.bound.value, kept[r.margin])
+        - problem.spare
         for r in problem.requirements
     }
     rows |= {str(limit): _room_of_sum(problem, limit, geometry) for limit in problem.sums}
@@ -230,10 +253,17 @@ def _items(vector: Any) -> list[Any]:
 
 
 def _margin(
-    problem: Problem, name: str, poses: Array, geometry: ca.MX, sizes: Mapping[str, float], bound: float = 0.0
+    problem: Problem,
+    name: str,
+    poses: Array,
+    geometry: ca.MX,
+    sizes: Mapping[str, float],
+    bound: float = 0.0,
+    kept: list[int] | None = None,
 ) -> ca.MX:
-    """By how much all components of a margin keep a bound at all poses, over the margin's size."""
+    """By how much the kept components of a margin, or all, keep a bound at all poses, over the margin's size."""
     components = problem.robot.margin_components(name, problem.fvi_bounds, problem.characteristic_length)
+    components = components if kept is None else components[kept]
     room = problem.robot.margin_named(name).sense * (components - bound)
     return _mapped(problem, room / sizes[name], poses, geometry)
 
