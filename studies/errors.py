@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from kinematics import Bound, LinkwrightError
 
@@ -62,6 +63,12 @@ class Failed:
     found: float
     pose: tuple[float, ...]
     place: str = ""
+
+    def as_data(self) -> dict[str, Any]:
+        """Its fields, the bound by its word."""
+        return {"margin": self.margin, self.bound.word: self.bound.value} | {
+            name: getattr(self, name) for name in ("found", "pose", "place")
+        }
 
     def __str__(self) -> str:
         where = f" at pose {_pose(self.pose)}" if self.pose else ""
