@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from kinematics import Bound, LinkwrightError
 
@@ -64,6 +65,12 @@ class Failed:
     pose: tuple[float, ...]
     place: str = ""
     part: str | None = None
+
+    def as_data(self) -> dict[str, Any]:
+        """Its fields, the bound by its word."""
+        return {"margin": self.margin, self.bound.word: self.bound.value} | {
+            name: getattr(self, name) for name in ("found", "pose", "place")
+        }
 
     def __str__(self) -> str:
         where = f" at pose {_pose(self.pose)}" if self.pose else ""

@@ -47,8 +47,11 @@ def _fail(message: str, status: int, data: dict[str, Any]) -> NoReturn:
 def _data(error: Exception) -> dict[str, Any]:
     """The data of an error: its kind, its faults with file and key, the requirements that fail."""
     kind = {"kind": type(error).__name__}
-    lists = {"problems": getattr(error, "faults", ()), "failed": getattr(error, "failed", ())}
-    return kind | {name: [_plain(vars(one)) for one in found] for name, found in lists.items() if found}
+    lists = {
+        "problems": [vars(fault) for fault in getattr(error, "faults", ())],
+        "failed": [one.as_data() for one in getattr(error, "failed", ())],
+    }
+    return kind | {name: _plain(found) for name, found in lists.items() if found}
 
 
 def _plain(value: Any) -> Any:

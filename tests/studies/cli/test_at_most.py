@@ -129,6 +129,10 @@ def test_a_bound_that_does_not_hold_names_file_line_key_and_both_numbers(tmp_pat
     told = " ".join(result.stderr.split())
     assert f"{study}:{line}: requirement.at_most: mass: found 3.93 at pose" in told
     assert "expected at most 3.5" in told
+    data = json.loads(linkwright("run", study, "--out", tmp_path / "out", "--json").stdout)
+    failed = next(one for one in data["failed"] if one["margin"] == "mass")
+    assert (failed["at_most"], failed["found"]) == (3.5, pytest.approx(3.93))
+    assert "at_least" not in failed
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ import pytest
 
 from design import Box, Certificate, certificate_bytes, load_certificate, replay
 from design.certificates.box_tree import PROVED
-from kinematics import FviBounds, Heli4
+from kinematics import Bound, FviBounds, Heli4
 from studies.building.load import load_study
 from studies.committed.check import proofs
 from studies.committed.optimum import read_optimum
@@ -83,7 +83,7 @@ def flipped(certificate: Certificate) -> Certificate:
         (lambda c: replace(c, edition=1), "edition"),
         (lambda c: replace(c, status="undecided"), "decides nothing"),
         (lambda c: replace(c, boxes=c.boxes + 1), "boxes"),
-        (lambda c: replace(c, at_least=0.39), "bound"),
+        (lambda c: replace(c, bound=Bound(0.39)), "bound"),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )
@@ -103,7 +103,7 @@ def test_a_bound_raised_in_both_files_is_not_proved(small_run: SmallRun, outcome
     file = tmp_path / "certificates" / "J_q.npz"
     claimed = load_certificate(file).bound.value
     raised = outcome.worst["internal_determinant"].value + 1.0
-    forged(file, lambda c: replace(c, at_least=raised))
+    forged(file, lambda c: replace(c, bound=Bound(raised)))
     optimum.write_text(optimum.read_text().replace(f"at_least = {claimed}", f"at_least = {raised}"))
     assert [row.found for row in failed(outcome, tmp_path) if "not proved" in row.found]
 
