@@ -257,9 +257,10 @@ def _own(member: Member, root: bool, bodies: Bodies, robot: Mechanism, felt: _Fe
     """Force (3,) and moment (3,) that the masses beyond an arm's root or tip exert there: its own, if it is the root,
     and the rods' ends at its tip. A member whose mass is a rod's in `bodies` counts as one that is clamped at its root.
     """
-    tube, force, moment = member.tube, ca.SX(3, 1), ca.SX(3, 1)
+    tube, link = member.tube, member.link or member.name
+    force, moment = ca.SX(3, 1), ca.SX(3, 1)
     own: list[tuple[float | ca.SX, ca.SX]] = [
-        (particle.mass, particle.point) for particle in bodies.particles if particle.link == member.name
+        (particle.mass, particle.point) for particle in bodies.particles if particle.link == link
     ]
     if root and not own:
         mass = robot.structure.of(member).density * tube.area * ca.norm_2(tube.end - tube.start)
@@ -268,12 +269,12 @@ def _own(member: Member, root: bool, bodies: Bodies, robot: Mechanism, felt: _Fe
         force -= weight * felt(point)
         moment -= weight * ca.cross(point - tube.start, felt(point))
     for rotor in bodies.rotors if root else []:
-        if rotor.link == member.name and rotor.axis is not None:
+        if rotor.link == link and rotor.axis is not None:
             moment -= rotor.inertia * felt.second(rotor.angle) * rotor.axis
     for k, rod in enumerate(bodies.rods):
-        if member.name in rod.links:
+        if link in rod.links:
             near, middle, far = bodies.rod_particles(k)
-            end = (near, far)[rod.links.index(member.name)]
+            end = (near, far)[rod.links.index(link)]
             hung = -end.mass * felt(end.point) - middle.mass / 2 * felt(middle.point)
             force += hung
             moment += ca.cross(tube.end - tube.start, hung) if root else 0
