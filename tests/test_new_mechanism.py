@@ -32,7 +32,7 @@ def test_the_page_names_every_hook():
         "drives",
         "passive_joints",
         "link_tree",
-        "segment_pairs",
+        "base_members",
         "actuator_names",
         "actuator_units",
         "joint_cosines_and_sines",

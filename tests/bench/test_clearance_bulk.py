@@ -1,6 +1,6 @@
 """The clearance in bulk against batched numpy and against the collision library FCL, in the same process.
 
-Both peers get the ends of all bodies at every pose; Linkwright computes them too. All bodies of these robots are capsules.
+Both peers get the ends of all bodies at every pose; Linkwright computes them too. All bodies here are capsules.
 """
 
 from __future__ import annotations
