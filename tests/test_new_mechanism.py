@@ -33,6 +33,7 @@ def test_the_page_names_every_hook():
         "statics",
         "passive_joints",
         "link_tree",
+        "base_members",
         "actuator_names",
         "actuator_units",
         "joint_cosines_and_sines",

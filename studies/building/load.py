@@ -13,7 +13,17 @@ from studies.building.mechanisms import MechanismRefused, NamedMechanism, mechan
 from studies.building.objects import path_of, robot_of
 from studies.building.surroundings import require_room
 from studies.errors import Fault, KeyPath, StudyError, spelled
-from studies.study_file import Conversion, Finding, Key, Study, Table, TomlFile, WaypointTable, table_of
+from studies.study_file import (
+    Conversion,
+    Finding,
+    Key,
+    Study,
+    SurroundingsTable,
+    Table,
+    TomlFile,
+    WaypointTable,
+    table_of,
+)
 from trajectory import InvalidPath, read_waypoints
 
 # These keys can be checked only if the mechanism is known.
@@ -61,7 +71,8 @@ def load_study(file: TomlFile, allow_code: bool = False) -> Study:
         key = conversion.spelling.get(("geometry", error.field), ("geometry",))
         raise StudyError([file.fault(key, spelled(file.value(key)), error.expected)]) from error
     _require_thin_walls(study, file, conversion)
-    require_room(robot_of(study), file)
+    if study.surroundings != SurroundingsTable():
+        require_room(robot_of(study), file)
     return _with_waypoints(study, file, conversion, named.mechanism_class.pose_names)
 
 

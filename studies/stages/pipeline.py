@@ -116,6 +116,13 @@ def optimise(study: Study, progress: Progress) -> Synthesis:
     )
 
 
+def _tell_intersection(robot: Mechanism, progress: Progress) -> None:
+    """Tell if bodies of the study's own geometry intersect at home: which two, and how deep."""
+    if "clearance" in robot.margins and (room := float(robot.margin("clearance", robot.home))) < 0.0:
+        pair = robot.margin_place("clearance", robot.home)
+        progress(f"the study's own geometry intersects itself at home: {pair}, {-room:.3g} m deep")
+
+
 def designed(study: Study, robot: Mechanism | None, progress: Progress, solver_status: str = GIVEN) -> Outcome:
     """The geometry and its worst poses. If a robot is given, such as a known optimum, nothing is optimised.
 
@@ -123,6 +130,7 @@ def designed(study: Study, robot: Mechanism | None, progress: Progress, solver_s
         solver_status: the solver's last status for the given robot.
     """
     problem, region = problem_of(study), region_of(study)
+    _tell_intersection(problem.robot, progress)
     if study.home is not None and study.optimise is None:
         home_of(problem.robot)
     if robot is None and study.optimise is not None:

@@ -84,8 +84,10 @@ def certify_path(robot: Mechanism, path: Way) -> PathCertificate:
         margins[name] = min(bound, margins.get(name, np.inf))
     for name, margin in robot.margins.items():
         if margin.holds_on_paths and margin.shown_on_paths:
-            margins[name], more = prove_shown(robot, path, name, edges)
+            bound, more = prove_shown(robot, path, name, edges)
             count += more
+            if np.isfinite(bound):
+                margins[name] = bound
     return PathCertificate(margins, count)
 
 

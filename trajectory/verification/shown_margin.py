@@ -40,7 +40,7 @@ class _Programs(NamedTuple):
     shown: ToShow
     plain: BoxProgram
     with_gradient: BoxProgram
-    seen: BlockProgram
+    seen: BlockProgram | None
 
 
 def prove_shown(robot: Mechanism, path: Path | InTime, name: str, edges: Array) -> tuple[float, int]:
@@ -58,6 +58,8 @@ def prove_shown(robot: Mechanism, path: Path | InTime, name: str, edges: Array) 
     values = np.nan_to_num(robot.margin(name, poses), nan=-np.inf)
     worst = int(values.argmin())
     bound = _SHARE * float(values[worst])
+    if bound == np.inf:  # nothing is near
+        return bound, 0
     if bound <= 0.0:
         raise _refused(robot, path, name, float(s[worst]), float(values[worst]), proved=True)
     programs = _programs(robot, name)
@@ -81,8 +83,10 @@ def _least(programs: _Programs, path: Path | InTime, low: Array, high: Array, bo
     middle = 0.5 * low + 0.5 * high
     (poses,) = path.evaluate(middle, 0)
     bounds = np.full((len(low), 1), bound)
-    chosen = programs.shown.chosen(evaluate(programs.seen, poses, bounds)[0])
-    numbers = np.hstack([np.swapaxes(chosen, -1, -2).reshape(len(low), -1), bounds])
+    numbers = bounds
+    if programs.seen is not None:
+        chosen = programs.shown.chosen(evaluate(programs.seen, poses, bounds)[0])
+        numbers = np.hstack([np.swapaxes(chosen, -1, -2).reshape(len(low), -1), bounds])
     box, centre = path.enclose(low, high), path.enclose(middle, middle)
     point, _ = enclose(programs.plain, np.hstack([centre.low, numbers]), np.hstack([centre.high, numbers]))
     least, most = enclose(programs.with_gradient, np.hstack([box.low, numbers]), np.hstack([box.high, numbers]))
@@ -95,7 +99,6 @@ def _least(programs: _Programs, path: Path | InTime, low: Array, high: Array, bo
 def _programs(robot: Mechanism, name: str) -> _Programs:
     model, claim = robot.model(), ClaimSymbols.fresh()
     shown = robot.margins[name].to_show(robot, claim, robot.home, positive=True)
-    assert shown.matrix is not None
     others = claim.vector[1:]
     numbers = [*robot.geometry.vector(), *ClaimSymbols.values(0.0, robot.fvi_bounds, robot.characteristic_length)[1:]]
     inputs = [model.pose, ca.vec(shown.scaling), claim.bound, model.geometry, others]
@@ -105,8 +108,10 @@ def _programs(robot: Mechanism, name: str) -> _Programs:
         return BoxProgram.of(Program.of(function), numbers)
 
     gradient = ca.jacobian(shown.expressions, model.pose)
-    matrix = ca.substitute(shown.matrix, ca.vertcat(model.geometry, others), ca.SX(numbers))
-    seen = bulk(ca.Function("seen", [model.pose, claim.bound], [ca.densify(matrix)]))
+    seen = None
+    if shown.matrix is not None:
+        matrix = ca.substitute(shown.matrix, ca.vertcat(model.geometry, others), ca.SX(numbers))
+        seen = bulk(ca.Function("seen", [model.pose, claim.bound], [ca.densify(matrix)]))
     return _Programs(shown, program(shown.expressions), program(shown.expressions, gradient), seen)
 
 

@@ -32,16 +32,15 @@ class Clearance(Margin):
     shown_on_paths = True
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
-        """One component for each pair of shapes, and for each shape and what is around it."""
+        """One component for each pair of shapes, and for each shape and what is around it; infinite without any."""
         pairs, walled = rooms(robot)
-        return ca.vertcat(
-            *(pair.distance for pair in pairs), *(ca.mmin(room.distances) for room in walled), ca.SX(0, 1)
-        )
+        found = [pair.distance for pair in pairs] + [ca.mmin(room.distances) for room in walled]
+        return ca.vertcat(*found) if found else ca.SX(ca.inf)
 
-    def places(self, robot: Mechanism) -> list[str]:
+    def places(self, robot: Mechanism) -> list[str] | None:
         """The names of both members."""
         pairs, walled = rooms(robot)
-        return [pair.place for pair in pairs] + [room.place for room in walled]
+        return [pair.place for pair in pairs] + [room.place for room in walled] or None
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:  # noqa: ARG002
         """Each pair is parted by a direction (see `parting.py`), and each corner is on its side of each wall."""
@@ -52,6 +51,8 @@ class Clearance(Margin):
         for pair in pairs:
             rows.append(pair.rows(claim.bound, numbers[first : first + pair.numbers]))
             first += pair.numbers
+        if not pairs:
+            return ToShow(ca.vertcat(*rows, ca.SX(0, 1)), ca.SX(0, 0))
         fixed = sum(isinstance(pair, Fixed) for pair in pairs)
         seen = ca.vertcat(*(pair.seen(claim.bound) for pair in pairs))
         return ToShow(ca.vertcat(*rows), numbers, seen, lambda at: chosen(at, fixed)[..., None])

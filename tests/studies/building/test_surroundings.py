@@ -1,0 +1,71 @@
+"""The table `[surroundings]`: what it builds, and how its faults are told."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from kinematics import Obstacle, PayloadHull, Surroundings
+from studies.building import load_study, robot_of
+from studies.errors import StudyError
+from studies.study_file import design_question, read_toml
+
+STUDY = """title = "A Delta over a conveyor"
+mechanism = "Delta"
+[region]
+kind = "box"
+x = [-0.1, 0.1]
+y = [-0.1, 0.1]
+z = [-0.8, -0.7]
+[surroundings]
+floor_mm = -950
+[[surroundings.obstacle]]
+name = "conveyor"
+low = [-1, -0.3, -1.2]
+high = [1, 0.3, -0.9]
+[surroundings.payload_hull]
+radius = 0.03
+low_mm = -60
+high_mm = -6
+"""
+
+
+@pytest.fixture(autouse=True)
+def fake_mechanism() -> None:
+    """The real mechanisms here, in place of the other files' stand-in."""
+
+
+def loaded(folder: Path, *changes: tuple[str, str]):  # type: ignore[no-untyped-def]
+    text = STUDY
+    for before, after in changes:
+        assert before in text
+        text = text.replace(before, after)
+    (folder / "study.toml").write_text(text)
+    return load_study(read_toml(folder / "study.toml"))
+
+
+def test_a_study_s_surroundings_are_those_of_its_robot_and_of_its_question(tmp_path: Path) -> None:
+    study = loaded(tmp_path)
+    conveyor = Obstacle("conveyor", (-1.0, -0.3, -1.2), (1.0, 0.3, -0.9))
+    assert robot_of(study).surroundings == Surroundings(-0.95, (conveyor,), PayloadHull(0.03, -0.06, -0.006))
+    assert robot_of(study).conditions()["surroundings"]["floor"] == -0.95
+    assert "surroundings.floor" in design_question(study)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (
+            ("high_mm = -6", "high_mm = 4"),
+            r"payload_hull\.high_mm: found 4; expected a hull beside the plate, .* inside",
+        ),
+        (("floor_mm = -950", "floor_mm = -10"), r"floor_mm: found -10; expected a height below the base: motor 1"),
+        (("0.3, -0.9]", "0.3, -1.2]"), r"obstacle\.high: found \[1, 0\.3, -1\.2\]; expected .* each above that of low"),
+        (('"conveyor"', '""'), r'obstacle\.name: found ""'),
+        (("radius = 0.03", "radius = 0"), r"payload_hull\.radius: found 0; expected a length > 0"),
+    ],
+)
+def test_a_fault_is_told_at_its_key(tmp_path: Path, change: tuple[str, str], words: str) -> None:
+    with pytest.raises(StudyError, match=words):
+        loaded(tmp_path, change)
