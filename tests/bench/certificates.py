@@ -14,12 +14,14 @@ from kinematics import GoughStewart, Heli4, Mechanism, Peppermill, Redundant3T1R
 from tests.bench.page import ROOT, write_between
 
 CYLINDER = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-math.pi, math.pi))
+NARROW = Box(x=0.0, y=(-0.2, 0.2), z=(-0.2, 0.2), theta=(-math.pi / 2, math.pi / 2))
 HALF_TURN = Box(x=0.0, y=(-0.3, 0.3), z=(-0.3, 0.3), theta=(-math.pi / 2, math.pi / 2))
 TILTED = dict.fromkeys(("roll", "pitch", "yaw"), (-0.2, 0.2))
 HEXAPOD = Box(x=(-0.1, 0.1), y=(-0.1, 0.1), z=(0.5, 0.7), **TILTED)
 MILL = Box(x=(-0.2, 0.2), y=(-0.2, 0.2), z=(-0.05, 0.05), theta=(-2 * math.pi, 2 * math.pi))
 IN_WORDS = {
     CYLINDER: "cylinder of 0.5 m radius, 0.2 m high, a full turn",
+    NARROW: "±0.2 m in y and z, ±90°",
     HALF_TURN: "±0.3 m in y and z, ±90°",
     HEXAPOD: "±0.1 m and ±0.2 rad in all six",
     MILL: "±0.2 m, ±0.2 m, ±0.05 m, a full turn either way",
@@ -35,7 +37,8 @@ CASES: list[tuple[Mechanism, Region, str, float]] = [
     (Peppermill(), MILL, "J_q", 1e-6),
     (Heli4(), CYLINDER, "joint_travel", 0.16),
     (Heli4(), CYLINDER, "passive_joint", 0.32),
-    (Redundant3T1R(), HALF_TURN, "clearance", 0.062),
+    (Redundant3T1R(), NARROW, "clearance", 0.0076),
+    (Heli4(), CYLINDER, "clearance", 0.00295),
     (GoughStewart(), HEXAPOD, "joint_travel", 0.04),
     (GoughStewart(), HEXAPOD, "passive_joint", 0.19),
     (Peppermill(), MILL, "joint_travel", 0.095),

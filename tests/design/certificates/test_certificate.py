@@ -309,7 +309,7 @@ def test_equal_links_are_proved_up_to_where_they_fold_and_never_beyond() -> None
     [
         (Heli4(), CYLINDER, "joint_travel"),
         (Heli4(), CYLINDER, "passive_joint"),
-        (Redundant3T1R(), YZ, "clearance"),
+        (Redundant3T1R(), Box(x=0.0, y=(-0.2, 0.2), z=(-0.2, 0.2), theta=(-1.0, 1.0)), "clearance"),
         (Redundant3T1R(), YZ, "joint_travel"),
         (Redundant3T1R(), YZ, "passive_joint"),
         (GoughStewart(), HEXAPOD, "joint_travel"),

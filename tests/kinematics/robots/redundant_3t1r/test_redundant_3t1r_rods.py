@@ -1,5 +1,7 @@
 """Rod by rod: the parallelograms must hold the platform upright; and how near the arms come to each other."""
 
+import re
+
 import casadi as ca
 import numpy as np
 import pytest
@@ -209,17 +211,17 @@ def test_the_symbolic_segment_distance_is_the_numeric_one(a, b, c, d):
     assert np.isclose(float(SYMBOLIC(one.T, two.T)), segment_distances(one, two), rtol=0, atol=1e-12)
 
 
-def test_the_clearance_margin_is_the_arms_clearance():
-    rng = np.random.default_rng(16)
-    for geometry in (None, *(random_geometry(rng) for _ in range(20))):
-        other = Redundant3T1R(geometry)
-        poses = np.vstack([box(20_000, seed=17, y=0.6, z=0.8), [[0.0, 0, 3, 0]]])
-        margin, clearance = other.margin("clearance", poses), other.arm_clearance(poses)
-        assert (np.isnan(margin) == np.isnan(clearance)).all()
-        assert np.isnan(margin[-1])
-        good = ~np.isnan(margin)
-        assert good.sum() > 1_000
-        assert np.abs(margin - clearance)[good].max() < 1e-9
+def test_the_clearance_of_the_rods_is_that_of_their_axes_less_two_radii(robot):
+    poses = reachable(robot, box(60, seed=17, y=0.6, z=0.8), margin=0.01)
+    model = robot.model()
+    parts = robot.margin_components("clearance", robot.fvi_bounds, robot.characteristic_length)
+    places = robot.margins["clearance"].places(robot)
+    rods = [i for i, place in enumerate(places) if re.fullmatch(r"rod \d( [ab])? and rod \d( [ab])?", place)]
+    at = ca.Function("rods", [model.pose, model.geometry], [ca.mmin(parts[rods])])
+    found = np.array([float(at(pose, robot.geometry.vector())) for pose in poses])
+    by_axes = robot.arm_clearance(poses, rods=True) - 2 * robot.geometry.rod_radius
+    assert len(poses) > 20
+    assert np.abs(found - by_axes).max() < 1e-9
 
 
 def test_the_clearance_margin_has_the_slopes_of_central_differences(robot):
