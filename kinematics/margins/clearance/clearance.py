@@ -9,13 +9,11 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.margins.clearance.parting import Corner, Fixed, Turning, chosen
-from kinematics.margins.clearance.solids import Pair, Solid, rooms
+from kinematics.margins.clearance.solids import Pair, rooms
 from kinematics.mathematics import LinearForms, shortest_way
 from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
 
-# Of the longer member's length:
-_THIN = 0.05  # across a thinner gap a direction turns with the members
-_WIDE = 0.1  # across a wider gap one direction parts all shapes of two members
+_THIN = 0.05  # of the longer member's length: across a thinner gap a direction turns with the members
 
 
 class Clearance(Margin):
@@ -45,7 +43,7 @@ class Clearance(Margin):
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:  # noqa: ARG002
         """Each pair is parted by a direction (see `parting.py`), and each corner is on its side of each wall."""
         apart, walled = rooms(robot)
-        pairs = sorted(_grouped(robot, apart, inside), key=lambda pair: isinstance(pair, Turning))
+        pairs = sorted(_parted(robot, apart, inside), key=lambda pair: isinstance(pair, Turning))
         numbers = ca.SX.sym("direction", sum(pair.numbers for pair in pairs))
         rows, first = [room.distances - claim.bound for room in walled], 0
         for pair in pairs:
@@ -58,44 +56,30 @@ class Clearance(Margin):
         return ToShow(ca.vertcat(*rows), numbers, seen, lambda at: chosen(at, fixed)[..., None])
 
 
-def _grouped(robot: Mechanism, pairs: list[Pair], inside: Array) -> list[Fixed | Turning]:
-    """The pairs as they are parted: rods that are translates of each other together, the nearest pair first.
+def _parted(robot: Mechanism, pairs: list[Pair], inside: Array) -> list[Fixed | Turning]:
+    """Each pair as it is parted.
 
     Args:
-        inside: (n,) a pose; it decides which pair of a group is the first, and which gaps are thin.
+        inside: (n,) a pose; it decides which gaps are thin.
     """
     if not pairs:
         return []
     model = robot.model()
     forms = LinearForms(model.pose)
-    leader = _leaders(pairs, forms)
     ways = [shortest_way(a.core, b.core) for a, b in pairs]
-    rooms = [ca.norm_2(way) - a.radius - b.radius for way, (a, b) in zip(ways, pairs, strict=True)]
+    rooms = (ca.norm_2(way) - a.radius - b.radius for way, (a, b) in zip(ways, pairs, strict=True))
     parts = [room / ca.fmax(a.length, b.length) for room, (a, b) in zip(rooms, pairs, strict=True)]
-    at = ca.Function("gaps", [model.pose, model.geometry], [ca.vertcat(*rooms), ca.vertcat(*parts)])
-    room, part = (np.array(v)[:, 0] for v in at(inside, robot.geometry.vector()))
-    groups: dict[tuple[object, ...], list[int]] = {}
-    for k in np.argsort(room, kind="stable").tolist():
-        a, b = (leader[solid.number] for solid in pairs[k])
-        of_members = (a.member.name, b.member.name) if part[k] > _WIDE else (a.number, b.number)
-        groups.setdefault(of_members, []).append(k)
+    at = ca.Function("gaps", [model.pose, model.geometry], [ca.vertcat(*parts)])
+    part = np.array(at(inside, robot.geometry.vector()))[:, 0]
     found: list[Fixed | Turning] = []
-    for places in groups.values():
-        members, of_group = [pairs[k] for k in places], [ways[k] for k in places]
-        segments = not any(solid.core.faces for solid in members[0])
-        if segments and part[places[0]] < _THIN:
-            found.append(_turning(members, of_group, forms))
+    for k, (one, two) in enumerate(pairs):
+        corners = _corners(pairs[k], forms)
+        if part[k] < _THIN and not (one.core.faces or two.core.faces):
+            u, v = (sum(forms.difference(s.core.corners[:, 1], s.core.corners[:, 0]), ca.SX(3, 1)) for s in (one, two))
+            found.append(Turning(corners, (u, v), ways[k], pairs[k].thick))
         else:
-            found.append(Fixed([(_corners(pair, forms), pair.thick) for pair in members], of_group))
+            found.append(Fixed(corners, ways[k], pairs[k].thick))
     return found
-
-
-def _turning(pairs: list[Pair], ways: list[ca.SX], forms: LinearForms) -> Turning:
-    """The first pair, and the others as its translates."""
-    ends = _corners(pairs[0], forms)
-    u, v = (forms.difference(solid.core.corners[:, 1], solid.core.corners[:, 0]) for solid in pairs[0])
-    shifts = [_corners(pair, forms)[0].fixed - ends[0].fixed for pair in pairs]
-    return Turning(ends, (u[0] + u[1], v[0] + v[1]), shifts, ways, pairs[0].thick)
 
 
 def _corners(pair: Pair, forms: LinearForms) -> list[Corner]:
@@ -103,24 +87,6 @@ def _corners(pair: Pair, forms: LinearForms) -> list[Corner]:
     return [
         Corner(*forms.difference(two[:, j], one[:, i])) for i, j in product(range(one.shape[1]), range(two.shape[1]))
     ]
-
-
-def _leaders(pairs: list[Pair], forms: LinearForms) -> dict[int, Solid]:
-    """For each solid the first one that is a fixed translate of it, joined to the same members: itself, or a rod."""
-    solids = {solid.number: solid for pair in pairs for solid in pair}
-    found: dict[int, Solid] = {}
-    for number, solid in sorted(solids.items()):
-        alike = (first for first in found.values() if _translates(first, solid, forms))
-        found[number] = next(alike, solid)
-    return found
-
-
-def _translates(one: Solid, two: Solid, forms: LinearForms) -> bool:
-    if one.member is two.member or one.member.joints != two.member.joints or one.core.faces or two.core.faces:
-        return False
-    ends = [forms.difference(two.core.corners[:, i], one.core.corners[:, i]) for i in (0, 1)]
-    still = all(moving.is_zero() for moving, _ in ends)
-    return still and ca.is_equal(ends[0][1], ends[1][1], 1) and ca.is_equal(one.radius, two.radius, 1)
 
 
 CLEARANCE = Clearance()

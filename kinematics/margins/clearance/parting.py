@@ -5,7 +5,6 @@ the other: all of their points are so far apart along w. So w may be any functio
 
 A fixed w suits wide gaps. Beside a thin gap between long members, the far corners leave no room: turned by the ratio of
 gap to length, a fixed w no longer parts them. There w turns with the members: across one of them, or across both.
-Members that are translates of each other, such as the rods of a parallelogram, share their rows.
 """
 
 from __future__ import annotations
@@ -33,65 +32,60 @@ class Corner(NamedTuple):
 
 @dataclass(frozen=True)
 class Fixed:
-    """Pairs of bodies that one fixed direction parts.
+    """Two bodies that a fixed direction parts.
 
     Attributes:
-        pairs: the corners of each pair, and the sum of its radii [m].
-        ways: (3,) the shortest way between the bodies of each pair.
+        corners: of the one, seen from those of the other.
+        way: (3,) the shortest way between the bodies.
+        thick: the sum of their radii [m].
     """
 
-    pairs: list[tuple[list[Corner], ca.SX]]
-    ways: list[ca.SX]
+    corners: list[Corner]
+    way: ca.SX
+    thick: ca.SX
     numbers: ClassVar[int] = 3
 
     def seen(self, bound: ca.SX) -> ca.SX:  # noqa: ARG002
-        """What the choice of a direction looks at: the shortest way of all."""
-        return reduce(lambda a, b: ca.if_else(ca.sumsqr(b) < ca.sumsqr(a), b, a), self.ways)
+        """What the choice of a direction looks at."""
+        return self.way
 
     def rows(self, bound: ca.SX, w: ca.SX) -> ca.SX:
-        """Expressions that are all at least 0 only if the bodies of each pair are at least `bound` apart.
+        """Expressions that are all at least 0 only if the bodies are at least `bound` apart.
 
         There is one for all corners that move alike.
         """
-        size = ca.norm_2(w)
         groups: dict[tuple[int, ...], tuple[ca.SX, list[ca.SX]]] = {}
-        for corners, thick in self.pairs:
-            for moving, fixed in corners:
-                name = tuple(moving[i].element_hash() for i in range(3))
-                groups.setdefault(name, (moving, []))[1].append(ca.dot(w, fixed) - (bound + thick) * size)
-        rows = [ca.dot(w, moving) + reduce(ca.fmin, rest) for moving, rest in groups.values()]
+        for moving, fixed in self.corners:
+            name = tuple(moving[i].element_hash() for i in range(3))
+            groups.setdefault(name, (moving, []))[1].append(ca.dot(w, fixed))
+        kept = (bound + self.thick) * ca.norm_2(w)
+        rows = [ca.dot(w, moving) + reduce(ca.fmin, rest) - kept for moving, rest in groups.values()]
         return ca.vertcat(ca.sumsqr(w) - _LONG_ENOUGH, *rows)
 
 
 @dataclass(frozen=True)
 class Turning:
-    """Two segments with a thin gap, and their translates.
+    """Two segments with a thin gap.
 
     Attributes:
         ends: from start to start, from start to end, from end to start, and from end to end.
         segments: each from start to end, (3,).
-        shifts: (3,) of each translated pair against this one, the first 0.
-        ways: (3,) the shortest way between the segments of each pair.
+        way: (3,) the shortest way between them.
         thick: the sum of the radii [m].
     """
 
     ends: list[Corner]
     segments: tuple[ca.SX, ca.SX]
-    shifts: list[ca.SX]
-    ways: list[ca.SX]
+    way: ca.SX
     thick: ca.SX
     numbers: ClassVar[int] = 12
 
     def seen(self, bound: ca.SX) -> ca.SX:
         """What the choice of a direction looks at: the shortest way, the ends, and the distance to keep."""
-        best, shift = self.ways[0], self.shifts[0]
-        for other, moved in zip(self.ways[1:], self.shifts[1:], strict=True):
-            nearer = ca.sumsqr(other) < ca.sumsqr(best)
-            best, shift = ca.if_else(nearer, other, best), ca.if_else(nearer, moved, shift)
-        return ca.vertcat(best, *(moving + fixed + shift for moving, fixed in self.ends), bound + self.thick)
+        return ca.vertcat(self.way, *(moving + fixed for moving, fixed in self.ends), bound + self.thick)
 
     def rows(self, bound: ca.SX, numbers: ca.SX) -> ca.SX:
-        """Expressions that are all at least 0 only if the segments of each pair are at least `bound` apart.
+        """Expressions that are all at least 0 only if the segments are at least `bound` apart.
 
         With w = w_0 + m x v + n x u + k u x v, where u and v are the segments. A point of one and a point of the other
         differ by d + t v - s u, where d is the difference of two ends; near the gap it is small. What is 0, such as
@@ -106,8 +100,7 @@ class Turning:
         along_d = ca.dot(fixed, d) + ca.dot(m, ca.cross(v, d)) + ca.dot(n, ca.cross(u, d)) + k * ca.dot(both, d)
         along_u = ca.dot(fixed, u) - ca.dot(m, both)
         along_v = ca.dot(fixed, v) + ca.dot(n, both)
-        least = reduce(ca.fmin, (ca.dot(w, shift) for shift in self.shifts))
-        near = along_d + least - (bound + self.thick) * ca.norm_2(w)
+        near = along_d - (bound + self.thick) * ca.norm_2(w)
         rows = [near + (j - t) * along_v - (i - s) * along_u for i in (0, 1) for j in (0, 1)]
         return ca.vertcat(ca.sumsqr(w) - _LONG_ENOUGH, *rows)
 
