@@ -86,7 +86,7 @@ from kinematics.model import (
     continued,
     sides,
 )
-from kinematics.multibody import mjcf, swept_box
+from kinematics.multibody import PlacedShape, mjcf, placed_shapes, swept_box
 from kinematics.printed_bounds import rounded_down, rounded_up
 from kinematics.robots import MECHANISMS, Delta, Hexa
 from kinematics.robots.gough_stewart import GoughStewart, LostPaths, SelfMotion, SingularArchitecture
@@ -146,6 +146,7 @@ __all__ = [
     "Par4",
     "PayloadHull",
     "Peppermill",
+    "PlacedShape",
     "Planar3PRR",
     "Planar3RPR",
     "Planar3RRR",
@@ -184,6 +185,7 @@ __all__ = [
     "mjcf",
     "mobility_of_identical_chains",
     "over_spans",
+    "placed_shapes",
     "plain",
     "platform_stiffness",
     "positive",

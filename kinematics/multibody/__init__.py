@@ -2,10 +2,13 @@
 
 from kinematics.multibody.mjcf import mjcf
 from kinematics.multibody.open_tree import tree_motion
+from kinematics.multibody.placed_shapes import PlacedShape, placed_shapes
 from kinematics.multibody.swept_box import swept_box
 
 __all__ = [
+    "PlacedShape",
     "mjcf",
+    "placed_shapes",
     "swept_box",
     "tree_motion",
 ]

@@ -10,17 +10,19 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from design import Map, Problem, Region, Section, index_of, map_of
-from kinematics import Array, Mechanism
+from kinematics import Array, Mechanism, PlacedShape, placed_shapes
+from studies.report.solids import faces
 
 _COLOURS = ("#0b6e8e", "#d1495b", "#edae49", "#3c7a3f", "#6a4c93", "#8a5a44")
 _LINES = {
     "base": ("#888888", 1.1),
-    "arm": (_COLOURS[0], 3.5),
-    "platform": (_COLOURS[1], 3.0),
     "tool": (_COLOURS[2], 2.0),
 }
+_BODIES = {"": "#b8b8b8", "arm": _COLOURS[0], "link": _COLOURS[0], "plate": _COLOURS[1], "screw": _COLOURS[2]}
+_ROD = "#555555"
 _DASHES = ("-", "--")  # symmetric joints have equal curves: dashes let the curve below be seen
 STYLE: Any = {
     "font.size": 9,
@@ -58,13 +60,18 @@ def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.6 * len(robots), 4.2))
         drawn = {label: _finite(robot.polylines(pose_in(robot, region))) for label, robot in robots.items()}
-        low, high = _common_box([line for lines in drawn.values() for line in lines.values()] + region.outline())
+        shapes = {label: placed_shapes(robot, pose_in(robot, region)) for label, robot in robots.items()}
+        around = [side for own in shapes.values() for shape in own if shape.kind for side in _limits(shape)]
+        low, high = _common_box(
+            [line for lines in drawn.values() for line in lines.values()] + region.outline() + around
+        )
         for k, (label, lines) in enumerate(drawn.items(), start=1):
             axes = figure.add_subplot(1, len(robots), k, projection="3d")
             for name, line in lines.items():
-                kind = name.split()[0]
-                colour, width = _LINES.get(kind, ("#444444", 1.1))
-                axes.plot(*line.T, color=colour, linewidth=width)
+                if (kind := name.split()[0]) in _LINES:
+                    colour, width = _LINES[kind]
+                    axes.plot(*line.T, color=colour, linewidth=width)
+            _draw_bodies(axes, shapes[label], low, high)
             for edge in region.outline():
                 axes.plot(*edge.T, color="#3c7a3f", linewidth=0.8, alpha=0.7)
             axes.set(title=label, xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
@@ -73,6 +80,25 @@ def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
             axes.set_box_aspect(high - low, zoom=1.1)  # as long as the limits: equal scales
             axes.view_init(elev=18, azim=-60)
         return png(figure)
+
+
+def _limits(shape: PlacedShape) -> list[Array]:
+    """The corners moved by `around` to either side; without those that have no place."""
+    finite = shape.corners[np.isfinite(shape.corners).all(axis=-1)]
+    return [finite - shape.around, finite + shape.around]
+
+
+def _draw_bodies(axes: Any, shapes: list[PlacedShape], low: Array, high: Array) -> None:
+    """The members, and what of the base is within the box; one collection, so that what is in front hides the rest."""
+    polygons, colours = [], []
+    for shape in shapes:
+        within = bool(shape.kind) or not ((shape.corners < low) | (shape.corners > high)).any()
+        if np.isfinite(shape.corners).all() and within:
+            found = faces(shape)
+            polygons += found
+            colours += [_BODIES.get(shape.kind, _ROD)] * len(found)
+    if polygons:
+        axes.add_collection3d(Poly3DCollection(polygons, facecolors=colours, shade=True, linewidths=0.0))
 
 
 def pose_in(robot: Mechanism, region: Region) -> Array:

@@ -33,7 +33,8 @@ class Change:
     @property
     def worse(self) -> bool:
         """Whether the result is worse by more than a thousandth."""
-        return bool(self.sense * (self.after - self.before) < -_SAME * abs(self.before))
+        loss = self.sense * (self.before - self.after)
+        return bool(loss > _SAME * abs(self.before))
 
     def __str__(self) -> str:
         share = abs(self.after - self.before) / abs(self.before) if self.before else math.inf

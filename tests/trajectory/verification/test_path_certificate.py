@@ -92,3 +92,12 @@ def test_a_pose_out_of_reach_is_refused_with_its_limb() -> None:
 def test_another_kind_of_pose_is_refused() -> None:
     with pytest.raises(InvalidValue, match="pose of the path for GoughStewart"):
         certify_path(GoughStewart(), AdeptCycle())
+
+
+def test_clearance_is_proved_on_a_path_where_no_single_direction_parts_two_pairs_of_rods() -> None:
+    wide = Heli4.Geometry(base_radius=0.2, platform_radius=0.08, arm_length=0.334, rod_length=0.78, plate_offset=0.02)
+    robot = Heli4(wide)
+    proved = certify_path(robot, AdeptCycle()).margins["clearance"]
+    poses, _ = AdeptCycle().evaluate(np.linspace(0.0, AdeptCycle().length, 2000), 1)
+    lowest = robot.margin("clearance", poses).min()
+    assert 0.89 * lowest < proved < lowest
