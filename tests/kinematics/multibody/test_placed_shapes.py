@@ -9,7 +9,7 @@ from kinematics.robots.registry import MECHANISMS
 
 def test_the_tubes_of_an_arm_run_where_its_line_is_drawn():
     robot = Heli4()
-    pose = robot.home + [0.05, -0.03, 0.02, 0.4]
+    pose = robot.home + np.array([0.05, -0.03, 0.02, 0.4])
     lines = robot.polylines(pose)
     arms = [shape for shape in placed_shapes(robot, pose) if shape.member.startswith("arm") and shape.around > 0.02]
     assert [shape.kind for shape in arms] == ["arm"] * 4
