@@ -108,6 +108,13 @@ class Mechanism(Definition):
         """SHA-256 of `conditions`. A proof states it, so that it is known which robot it is for."""
         return hashlib.sha256(json.dumps(self.conditions(records), sort_keys=True).encode()).hexdigest()
 
+    @classmethod
+    def member_kinds(cls) -> list[str]:
+        """The materials' fields of `Structure` that the prototype's members name, in their order."""
+        pose, joints = ca.SX.sym("pose", len(cls.pose_names)), ca.SX.sym("joints", len(cls.joint_names))
+        members = cls().members(pose, joints, cls.Geometry.symbols()[1])
+        return list(dict.fromkeys(member.material for member in members))
+
     def with_inertia(self, inertia: InertiaRecord) -> Self:
         """The same robot with other masses and drives."""
         return self._with(inertia=inertia)

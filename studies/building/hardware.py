@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import Field, fields, replace
 from typing import TYPE_CHECKING, Any
 
-import casadi as ca
 import numpy as np
 
 from kinematics import MATERIALS, DriveTrain, InvalidValue, Load, Material, Structure
@@ -72,17 +71,10 @@ def hardware_tables(mechanism: type[Mechanism], raw: Mapping[str, Any]) -> dict[
         "inertia": Table(masses | {"drive_train": drives.updated({"encoder_resolution": error, "backlash": error})}),
         "ranges": Table(ranges | {"joints": joints}),
         "material": Table(dict.fromkeys(materials, table_of(MaterialTable))),
-        "structure": Table(dict.fromkeys(_member_kinds(mechanism), Key("a material out of", choices=known))).updated(
+        "structure": Table(dict.fromkeys(mechanism.member_kinds(), Key("a material out of", choices=known))).updated(
             table_of(StructureTable).keys
         ),
     }
-
-
-def _member_kinds(mechanism: type[Mechanism]) -> list[str]:
-    """The kinds of members that it has, in the order of its members."""
-    pose, joints = ca.SX.sym("pose", len(mechanism.pose_names)), ca.SX.sym("joints", len(mechanism.joint_names))
-    members = mechanism().members(pose, joints, mechanism.Geometry.symbols()[1])
-    return list(dict.fromkeys(member.material for member in members))
 
 
 def joint_unit(mechanism: type[Mechanism]) -> Dimension:

@@ -50,7 +50,8 @@ def scaled_bounds(robot: Mechanism, factor: float) -> FviBounds:
 def scale_of(robot: Mechanism, margin: str, factor: float) -> float:
     """What a margin is multiplied by.
 
-    NaN where its joints have different units, and where joints rest in a home that does not scale with the robot.
+    NaN where its joints have different units, where joints rest in a home that does not scale with the robot, and where
+    masses or the drives' stiffness count.
     """
     angles = list(robot.rotations)
     lengths = np.delete(np.array(robot.home, dtype=float), angles)
@@ -64,6 +65,8 @@ def scale_of(robot: Mechanism, margin: str, factor: float) -> float:
         return math.nan if len(units) > 1 else factor if units == {"m"} else 1.0
     if margin in ("v_w", "f_w", "force_capability") and set(robot.actuator_units) == {"rad"}:
         return factor if margin == "v_w" else 1.0 / factor
+    if {"inertia", "load"} & set(robot.margins[margin].records) and "accuracy" not in margin:
+        return math.nan  # neither masses nor drives scale with the robot
     return factor if robot.margins[margin].unit == "m" else 1.0
 
 

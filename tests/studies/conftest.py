@@ -9,7 +9,7 @@ import pytest
 
 import kinematics
 from kinematics import InertiaRecord, Margin
-from kinematics.machine import RodRanges, angle, length, screw_pitch
+from kinematics.machine import GeometryRecord, RodRanges, angle, length, screw_pitch
 from kinematics.margins.isotropic import FVI
 from kinematics.margins.mass import MASS
 from kinematics.margins.parallel import DET_J_X
@@ -110,8 +110,12 @@ class Fake:
     counts_turns: ClassVar[bool] = False
     margins: ClassVar[dict[str, Margin]] = {"mass": MASS, "J_q": J_Q, "J_x": DET_J_X, "fvi": FVI, "reach": REACH}
 
+    @classmethod
+    def member_kinds(cls) -> list[str]:
+        return ["arm", "rod"]
+
     @dataclass(frozen=True)
-    class Geometry:
+    class Geometry(GeometryRecord):
         arm_length: float = length(0.35, doc="L")
         rod_length: float = length(0.8, doc="l")
         plate_offset: float = length(0.0, minimum=None, doc="h")

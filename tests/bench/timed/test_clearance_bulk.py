@@ -12,9 +12,9 @@ import casadi as ca
 import fcl
 import numpy as np
 import pytest
-from kinematics.margins.solids import rooms
 
 from kinematics import Array, Heli4, Mechanism, Peppermill, Redundant3T1R, bulk, evaluate
+from kinematics.margins.clearance.solids import rooms
 from kinematics.mathematics import segment_distances
 
 ROBOTS: dict[str, Mechanism] = {kind.__name__: kind() for kind in (Heli4, Redundant3T1R, Peppermill)}

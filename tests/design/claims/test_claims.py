@@ -19,6 +19,7 @@ CLOSE = (
     "rotational_stiffness",
     "internal_stiffness",
     "natural_frequency",
+    "strength",
 )
 CASES = [(robot, margin) for robot in ROBOTS for margin in robot.margins]
 

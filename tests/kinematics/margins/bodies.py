@@ -5,11 +5,11 @@ from __future__ import annotations
 import casadi as ca
 import fcl
 import numpy as np
-from kinematics.margins.solids import Pair, rooms
 from scipy.optimize import nnls
 from scipy.spatial import ConvexHull
 
 from kinematics import Array, Measure, Mechanism
+from kinematics.margins.clearance.solids import Pair, rooms
 
 
 def signed_by_hull(one: Array, two: Array) -> float:

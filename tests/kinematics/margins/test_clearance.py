@@ -8,7 +8,6 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
-from kinematics.margins.solids import rooms
 
 from kinematics import (
     MECHANISMS,
@@ -26,6 +25,7 @@ from kinematics import (
     hull_depth,
     lowest_of_base,
 )
+from kinematics.margins.clearance.solids import rooms
 from kinematics.mathematics import Convex, signed_distance
 from tests.kinematics.margins.bodies import between, components, corners, signed_by_fcl, signed_by_hull
 

@@ -48,7 +48,7 @@ def test_neighbouring_rods_that_run_nearly_parallel_are_proved_apart() -> None:
     assert replay(proved, robot, region=region, **asked) > 0
     refuted = certify(robot, region, "clearance", at_least=1.001 * float(sampled), most_boxes=50_000)
     assert refuted.counterexample is not None
-    assert robot.margin("clearance", refuted.counterexample) < refuted.at_least
+    assert robot.margin("clearance", refuted.counterexample) < refuted.bound.value
 
 
 def test_a_floor_is_proved_and_refuted_over_a_region() -> None:

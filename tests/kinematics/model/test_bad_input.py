@@ -8,6 +8,8 @@ from hypothesis import strategies as st
 from kinematics import Heli4, InvalidGeometry, InvalidShape, LinkwrightError, UnreachablePose
 from tests.kinematics.by_hand import ByHand, cylinder
 
+_COUNT = sum(Heli4.Geometry.sizes().values())
+
 ROBOT = Heli4()
 
 
@@ -111,9 +113,13 @@ def test_signed_lengths_and_left_handed_screws_are_fine():
     assert np.isfinite(Heli4(geometry).inverse(Heli4().home)).all()
 
 
-@given(st.lists(st.floats(0.01, 2.0), min_size=17, max_size=17))
+@given(st.lists(st.floats(0.01, 2.0), min_size=_COUNT, max_size=_COUNT))
 @settings(max_examples=50, deadline=None)
 def test_geometry_to_vector_and_back(values):
+    fields = list(Heli4.Geometry.sizes())
+    for wall, radius in Heli4.Geometry.walls().items():
+        places = [sum(list(Heli4.Geometry.sizes().values())[: fields.index(name)]) for name in (wall, radius)]
+        values[places[0]] = min(values[k] for k in places)
     values[8] += 2.5  # limbs of one plate, apart
     values[10] += 2.5
     geometry = Heli4.Geometry.from_vector(np.array(values))
