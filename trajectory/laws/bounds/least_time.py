@@ -147,21 +147,27 @@ def _largest_x(g, h, r, most_x, most_y):  # type: ignore[no-untyped-def]
 
 @numba.njit(cache=True, error_model="numpy")
 def _on_line(g, h, r, i, most_x, most_y):  # type: ignore[no-untyped-def]
-    """Least and largest x on the line g_i x + h_i y = r_i, h_i not 0, within the rows before it and the bounds."""
+    """Least and largest x on the line g_i x + h_i y = r_i, h_i not 0, within the rows before it and the bounds.
+
+    Along a row that is parallel to the line only rounding is left of x, such as for joints that move alike. It says
+    nothing of x.
+    """
     low, high = 0.0, most_x
     slope, start = -g[i] / h[i], r[i] / h[i]  # y = start + slope x
     for j in range(-2, i):
         if j == -2:
-            by, rest = slope, most_y - start
+            by, rest, size = slope, most_y - start, 0.0
         elif j == -1:
-            by, rest = -slope, start
+            by, rest, size = -slope, start, 0.0
         else:
             by, rest = g[j] + h[j] * slope, r[j] - h[j] * start
+            size = abs(g[j]) + abs(h[j] * slope)
         rest += _LINE * (1.0 if j >= 0 else most_y)
-        if by > 0.0:
+        if abs(by) <= _LINE * size:
+            if rest < -abs(by) * most_x:
+                return 1.0, -1.0
+        elif by > 0.0:
             high = min(high, rest / by)
-        elif by < 0.0:
+        else:
             low = max(low, rest / by)
-        elif rest < 0.0:
-            return 1.0, -1.0
     return low, high
