@@ -46,10 +46,11 @@ class Strength(Margin):
         factors = [f for load in case.loads(case.shared()) for f in safety_factors(load, size).values()]
         return ca.vertcat(*factors) if factors else ca.SX(math.inf)
 
-    def places(self, robot: Mechanism) -> list[str]:
-        """The member of each component, and by what it fails."""
+    def places(self, robot: Mechanism) -> list[str] | None:
+        """The member of each component, and by what it fails; None without the hook `statics`."""
         size = WorstDirection(robot.load.acceleration)
-        return [f"{own.member}, {what}" for own in case_at_rest(robot).bearers for what in safety_factors(own, size)]
+        bearers = case_at_rest(robot).bearers
+        return [f"{own.member}, {what}" for own in bearers for what in safety_factors(own, size)] or None
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
         """Capacity - c load >= 0, with t = W^-1 Q enclosed by `_Enclosed`, and an arm's bending by `_Turned`."""

@@ -269,7 +269,7 @@ class Mechanism(Definition):
     def margin_place(
         self, name: str, pose: Array, bounds: FviBounds | None = None, characteristic_length: float | None = None
     ) -> str | None:
-        """Where a margin is smallest at one pose (n,), in words, such as "limb 1" or "rod 1 and rod 3".
+        """Where a margin is worst at one pose (n,), in words, such as "limb 1" or "rod 1 and rod 3".
 
         None if its components have no place of their own, or if the pose is out of reach.
         """
@@ -277,7 +277,8 @@ class Mechanism(Definition):
         if places is None:
             return None
         measure = Measure(bounds or self.fvi_bounds, self._length(characteristic_length))
-        values = evaluate(self.program(expressions.margin_components, name, measure), self._poses(pose))[0].ravel()
+        found = evaluate(self.program(expressions.margin_components, name, measure), self._poses(pose))[0].ravel()
+        values = self.margins[name].sense * found
         return None if np.isnan(values).all() else places[int(np.nanargmin(values))]
 
     def margin_named(self, name: str) -> Margin:

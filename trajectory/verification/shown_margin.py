@@ -55,7 +55,8 @@ def prove_shown(robot: Mechanism, path: Path | InTime, name: str, edges: Array) 
     shares = np.arange(_SAMPLES) / _SAMPLES
     s = np.append((edges[:-1, None] + np.diff(edges)[:, None] * shares).ravel(), edges[-1])
     (poses,) = path.evaluate(s, 0)
-    values = np.nan_to_num(robot.margin(name, poses), nan=-np.inf)
+    values = robot.margin(name, poses)
+    values = np.where(np.isnan(values), -np.inf, values)
     worst = int(values.argmin())
     bound = _SHARE * float(values[worst])
     if bound == np.inf:  # nothing is near

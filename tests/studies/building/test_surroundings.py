@@ -49,7 +49,7 @@ def test_a_study_s_surroundings_are_those_of_its_robot_and_of_its_question(tmp_p
     study = loaded(tmp_path)
     conveyor = Obstacle("conveyor", (-1.0, -0.3, -1.2), (1.0, 0.3, -0.9))
     assert robot_of(study).surroundings == Surroundings(-0.95, (conveyor,), PayloadHull(0.03, -0.06, -0.006))
-    assert robot_of(study).conditions()["surroundings"]["floor"] == -0.95
+    assert robot_of(study).conditions(("surroundings",))["surroundings"]["floor"] == -0.95
     assert "surroundings.floor" in design_question(study)
 
 
