@@ -7,8 +7,20 @@ import numpy as np
 
 from kinematics import MECHANISMS, Mechanism
 from kinematics.machine import MATERIALS
+from studies.building.load import load_study
+from studies.building.objects import robot_of
+from studies.stages import time_cycle
+from studies.study_file.locate import study_path
+from studies.study_file.toml_file import read_toml
 from tests.bench.page import ROOT, write_between
+from tests.kinematics.weighed import GOUGH_STEWART, HELI4, PEPPERMILL, REDUNDANT
 
+WEIGHED = {
+    "cycle_reference": HELI4,
+    "redundant_3t1r": REDUNDANT,
+    "peppermill": PEPPERMILL,
+    "gough_stewart": GOUGH_STEWART,
+}
 PAGE, BY = ROOT / "docs" / "bodies.md", "python -m tests.bench.bodies"
 
 
@@ -16,6 +28,7 @@ def main() -> None:
     """Write the page's tables."""
     write_between(PAGE, "materials", _materials(), BY)
     write_between(PAGE, "masses", _masses(), BY)
+    write_between(PAGE, "cycles", _cycles(), BY)
 
 
 def _materials() -> str:
@@ -54,6 +67,20 @@ def _mass_without_sections(robot: Mechanism) -> float:
     bodies = thin.bodies(model.pose, model.joints, model.g, 0.0)
     total = ca.sum1(ca.vertcat(*(particle.mass for particle in bodies.all_particles())))
     return float(np.array(ca.Function("mass", [model.geometry], [total])(thin.geometry.vector())).item())
+
+
+def _cycles() -> str:
+    lines = [
+        "| cycle of the study's own geometry | with given masses [s] | with the masses of its bodies [s] | change |"
+    ]
+    lines.append("| --- | --- | --- | --- |")
+    for name, weighed in WEIGHED.items():
+        study = load_study(read_toml(study_path(name)))
+        own = study.mechanism_class.Inertia()
+        robots = (robot_of(study).with_inertia(inertia) for inertia in (weighed, own))
+        given, found = (time_cycle(study, robot).half_cycle for robot in robots)
+        lines.append(f"| {name} | {given:.5f} | {found:.5f} | {100 * (found / given - 1):+.2f} % |")
+    return "\n".join([*lines, ""])
 
 
 if __name__ == "__main__":
