@@ -70,9 +70,7 @@ def _mass_without_sections(robot: Mechanism) -> float:
 
 
 def _cycles() -> str:
-    lines = [
-        "| cycle of the study's own geometry | with given masses [s] | with the masses of its bodies [s] | change |"
-    ]
+    lines = ["| study, own geometry | half cycle, given masses [s] | masses of its bodies [s] | change |"]
     lines.append("| --- | --- | --- | --- |")
     for name, weighed in WEIGHED.items():
         study = load_study(read_toml(study_path(name)))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from kinematics import Heli4
+from tests.kinematics.weighed import HELI4
 from trajectory import AdeptCycle, Cycle, Limits, Path, TimedPath, TimeLaw, there_and_back, time_optimal
 
 
@@ -101,7 +102,7 @@ def straight() -> type[Straight]:
 
 @pytest.fixture(scope="session")
 def robot() -> Heli4:
-    return Heli4()
+    return Heli4(inertia=HELI4)
 
 
 @pytest.fixture(scope="session")
