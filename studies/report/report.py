@@ -22,7 +22,7 @@ from studies.report.tables import (
     member_rows,
     proof_rows,
 )
-from studies.stages import Outcome, Timing
+from studies.stages import Outcome, Timing, became_worse
 from trajectory import motion_of
 
 Pictures = list[tuple[str, bytes]]  # title and PNG
@@ -54,6 +54,7 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
         margin_columns=margin_columns(outcome),
         margins=margin_rows(outcome),
         margin_words=_margin_words(outcome),
+        worse=[str(change) for change in became_worse(outcome)],
         proof_columns=PROOFS,
         proofs=proof_rows(outcome.proofs),
         sampled=next(iter(outcome.worst.values())).sampled,
@@ -78,7 +79,7 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
 def _margin_words(outcome: Outcome) -> list[tuple[str, str, str]]:
     """Name, unit and meaning of each margin in the table."""
     margins = outcome.robot.margins
-    return [(name, margins[name].unit, margins[name].words) for name in outcome.worst]
+    return [(name, margins[name].unit, margins[name].words) for name in outcome.worst | outcome.unasked]
 
 
 def _geometry_rows(outcome: Outcome) -> list[tuple[str, str, str, str]]:
