@@ -169,13 +169,15 @@ def _stated(header: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def _spelled(value: Any) -> str:
-    """Plain data in words; empty data is "none"."""
+    """Plain data in words; empty data is "none", and a mass without a number is that of the members."""
     if isinstance(value, dict):
         return "; ".join(
             f"{name} ({_spelled(v)})" if isinstance(v, dict) else f"{name} {_spelled(v)}" for name, v in value.items()
         )
     if isinstance(value, list):
         return ", ".join(_spelled(v) for v in value) or "none"
+    if value is None:
+        return "as of the members"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 

@@ -33,6 +33,7 @@ CONVENTIONS = (
 ASSUMPTIONS = (
     "the default inertia and the reference limits are an assumed drive set, not a manufacturer's datasheet",
     "rigid bodies; `inertia` states the friction, and by rod_middle how a rod's mass is spread: 0 is half at each end",
+    "a mass in `inertia` without a number, null, is that of the members",
     "q'' and the torque are right-hand limits where s'' jumps",
 )
 _CONSISTENT = 1e-9  # of the loop closure [rad, or over the robot's size]

@@ -31,7 +31,7 @@ from tests.sizes import few_of
 PI = math.pi
 CYLINDER = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-PI, PI))
 YZ = Box(x=0.0, y=(0.0, 0.3), z=(0.1, 0.3), theta=(-PI / 2, PI / 2))
-HALF_TURN = Box(x=0.0, y=(-0.3, 0.3), z=(-0.3, 0.3), theta=(-PI / 2, PI / 2))
+NARROWER = Box(x=0.0, y=(-0.26, 0.26), z=(-0.26, 0.26), theta=(-PI / 2, PI / 2))
 HEXAPOD = Box(x=(-0.1, 0.1), y=(-0.1, 0.1), z=(0.5, 0.7), roll=(-0.2, 0.2), pitch=(-0.2, 0.2), yaw=(-0.2, 0.2))
 SCREWS = Box(x=(-0.2, 0.2), y=(-0.2, 0.2), z=(-0.05, 0.05), theta=(-2 * PI, 2 * PI))
 CLAIMS: list[tuple[Mechanism, Region, str, float, int]] = [
@@ -46,7 +46,7 @@ CLAIMS: list[tuple[Mechanism, Region, str, float, int]] = [
     (GoughStewart(), HEXAPOD, "det_J_x", 1e-6, 4),
     (Heli4(), CYLINDER, "joint_travel", 0.165, 30),
     (Heli4(), CYLINDER, "passive_joint", 0.32, 30),
-    (Redundant3T1R(), HALF_TURN, "clearance", 0.062, 30),
+    (Redundant3T1R(), NARROWER, "clearance", 0.015, 30),
     (Redundant3T1R(), Box(x=0.0, y=(-0.2, 0.2), z=(0.0, 0.1), theta=(-PI / 2, PI / 2)), "passive_joint", 0.5, 1),
     (GoughStewart(), HEXAPOD, "joint_travel", 0.04, 10),
     (GoughStewart(), HEXAPOD, "passive_joint", 0.19, 4),

@@ -173,8 +173,8 @@ def test_the_least_lean_is_that_of_the_longest_rod_that_reaches() -> None:
 
 def test_room_for_joints_and_arms_can_be_asked_for_and_is_then_certified() -> None:
     robot = Redundant3T1R()
-    region = Box(x=0.0, y=(-0.3, 0.3), z=(-0.3, 0.3), theta=(-math.pi / 2, math.pi / 2))
-    wanted = {"clearance": 0.08, "passive_joint": 0.35, "joint_travel": 0.6}
+    region = Box(x=0.0, y=(-0.26, 0.26), z=(-0.26, 0.26), theta=(-math.pi / 2, math.pi / 2))
+    wanted = {"clearance": 0.025, "passive_joint": 0.35, "joint_travel": 0.6}
     bounds = (("middle_rail_y", -0.6, -0.3), ("outer_rail_z", 0.2, 0.5), ("platform_height", 0.1, 0.3))
     asked = replace(
         problem(requirements=tuple(Requirement(margin, least) for margin, least in wanted.items())),

@@ -47,14 +47,16 @@ def test_a_study_gets_the_files_it_asks_for(tmp_path: Path) -> None:
     said = trajectory(tmp_path, asking(json.dumps(list(FORMATS)), DRIVE))
     written = {file.name for file in (tmp_path / "out").iterdir()}
     ends = ("csv", "ros2.yaml", "ros2.mcap", "cia402.csv", "zaber.csv", "xps.trj", "pmac")
-    assert written - {LIST} == {f"cycle.{end}" for end in ends} == {Path(name).name for name in said["files"]}
+    expected = {"frame_reaction.csv"} | {f"cycle.{end}" for end in ends}
+    assert written - {LIST} == expected == {Path(name).name for name in said["files"]}
     assert set(said["between_setpoints"]) == {"linear", "cubic", "quintic"}
     assert "X 0x607A,Y 0x607A,Z 0x607A,A 0x607A" in (tmp_path / "out" / "cycle.cia402.csv").read_text()
 
 
 def test_the_command_line_s_formats_take_the_study_s_place(tmp_path: Path) -> None:
     trajectory(tmp_path, SMALL, "--format", "xps", "--format", "zaber")
-    assert {file.name for file in (tmp_path / "out").iterdir()} - {LIST} == {"cycle.xps.trj", "cycle.zaber.csv"}
+    written = {file.name for file in (tmp_path / "out").iterdir()} - {LIST}
+    assert written == {"cycle.xps.trj", "cycle.zaber.csv", "frame_reaction.csv"}
 
 
 @pytest.mark.parametrize(

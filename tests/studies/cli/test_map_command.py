@@ -72,7 +72,7 @@ def test_defaults_come_from_the_study() -> None:
     asked = redundant()
     assert asked.section.axes == ("y", "z")
     assert (asked.index.name, asked.bound) == ("fvi", 1.0)
-    assert redundant(margin="clearance").bound == 0.03
+    assert redundant(margin="clearance").bound == 0.005
     assert redundant(margin="v_w").bound is None
     assert heli().section.axes == ("x", "y")
     assert heli(at=("z=-0.7",)).section.axes == ("x", "y")
@@ -101,7 +101,7 @@ def test_other_bounds_and_units() -> None:
     assert isinstance(region, Box)
     assert np.allclose(region.intervals["theta"], (-math.pi / 4, math.pi / 4))
     assert np.allclose(region.intervals["z"], (0.0, 0.5))
-    assert region.intervals["y"] == (-0.3, 0.3)
+    assert region.intervals["y"] == (-0.28, 0.28)
     cylinder = heli(over=("radius_mm=250", "z=-0.75:-0.65")).section.region
     assert isinstance(cylinder, Cylinder)
     assert (cylinder.radius, cylinder.intervals["z"]) == (0.25, (-0.75, -0.65))
@@ -152,7 +152,7 @@ def test_what_cannot_be_proved_is_refused_before_anything_runs(asked: Any) -> No
 
 def test_where_no_node_keeps_the_bound_the_grid_s_step_is_said(capsys: pytest.CaptureFixture[str]) -> None:
     print_map(run_map(redundant(at=("theta=0",), at_least=99.0), 1e-3, False, lambda _: None), Written(), False)
-    assert "no node keeps the bound; the nodes are 0.0012 m and 0.0012 m apart" in " ".join(
+    assert "no node keeps the bound; the nodes are 0.0011 m and 0.0011 m apart" in " ".join(
         capsys.readouterr().out.split()
     )
 

@@ -45,7 +45,7 @@ def test_a_run_writes_optimum_report_and_set_points_and_says_so(
 
 def test_the_report_opens_offline(small_run: SmallRun) -> None:
     page = (small_run[0] / "out" / "report.html").read_text()
-    assert "rod_middle 0; drive_train (gear_ratio 1; motor_inertia 0;" in page
+    assert "rod_middle as of the members; drive_train (gear_ratio 1; motor_inertia 0;" in page
     assert '<td>limits not kept by this law</td><td class="n">none</td>' in page
     sources = re.findall(r'(?:src|href)="([^"]{0,40})', page)
     assert len(sources) >= 5

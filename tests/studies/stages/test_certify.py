@@ -172,7 +172,7 @@ def test_a_refuted_claim_fails_a_run_though_its_dense_sample_holds(outcome: Outc
     (claim,) = outcome.question.only("J_q", outcome.worst["fvi"].value)  # far above
     proof = outcome.question.prove(claim, None, None, lambda _: None)
     assert proof.gap < 0.0
-    with pytest.raises(RequirementFailed, match=r"J_q: found 0\.\d+ at pose \("):
+    with pytest.raises(RequirementFailed, match=r"J_q of limb \d: found 0\.\d+ at pose \("):
         replace(outcome, proofs=(proof,)).require_all()
 
 
