@@ -177,7 +177,6 @@ def solve(
         more = near.grown(answer.values)
         if not more or taken >= seconds:
             return replace(answer, converged=answer.converged and not more, iterations=iterations, seconds=taken)
-        start = answer.values
 
 
 def _solved(
