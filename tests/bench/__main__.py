@@ -130,6 +130,10 @@ def _run_table(run: dict[str, Any]) -> str:
         f"| {name} | {run['prototype'][name]:.4f} | {worst['value']:.4f} | {proofs.get(name, '')} |"
         for name, worst in run["worst"].items()
     ]
+    lines += [
+        f"| {name} | {run['unasked_before'][name]:.5g} | {worst['value']:.5g} | not asked |"
+        for name, worst in run["unasked"].items()
+    ]
     lines += ["", f"Held back by: {'; '.join(run['active'])}.", ""]
     header, cycle, before = run["cycle_header"], run["cycle"], run["prototype_cycle"]
     path = ", ".join(
