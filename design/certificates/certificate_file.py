@@ -36,6 +36,7 @@ _PLAIN: dict[str, type] = {
     "within_reach": bool,
     "boxes": int,
 }
+_MOST_WORDS = 300
 _SENSES = {"at_least": 1, "at_most": -1}
 _LARGEST_FILE = 1 << 23  # bytes; a hundred times the largest known file
 _MOST_LEFT = 1 << 16  # boxes that were not proved; they show where the proof failed
@@ -102,7 +103,8 @@ def load_certificate(path: Path) -> Certificate:
         return _certificate(path)
     except _FAULTS as error:
         found = error.strerror if isinstance(error, OSError) else None
-        raise UnreadableCertificate(path, found or str(error) or type(error).__name__) from error
+        words = str(error)[:_MOST_WORDS]  # a library may quote the whole file
+        raise UnreadableCertificate(path, found or words or type(error).__name__) from error
 
 
 def _certificate(path: Path) -> Certificate:

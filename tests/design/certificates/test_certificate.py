@@ -380,18 +380,19 @@ def test_no_answer_about_a_random_robot_is_false(mechanism: type[Mechanism]) -> 
         margin = str(rng.choice(list(robot.margins)))
         values = robot.margin(margin, poses)
         reached = robot.margin("reach", poses) >= 0.0
-        lowest = float(np.nanmin(values)) if np.isfinite(values).any() else 0.5
-        bound = lowest + float(rng.choice([-1.0, 1.0])) * 10.0 ** rng.uniform(-9.0, -0.5)
+        sense = robot.margins[margin].sense
+        worst = sense * float(np.nanmin(sense * values)) if np.isfinite(values).any() else 0.5
+        bound = worst + float(rng.choice([-1.0, 1.0])) * 10.0 ** rng.uniform(-9.0, -0.5)
         bound = max(bound, 0.0) if margin == "reach" else bound  # every claim claims reach itself
-        found = certify(robot, region, margin, at_least=bound, most_boxes=5_000)
+        found = certify(robot, region, margin, most_boxes=5_000, **bound_of(robot, margin, bound))
         told = (mechanism.__name__, margin, bound, region, geometry)
         if found.status == "proved":
             assert reached.all(), told
-            assert (values >= bound - 1e-12 * max(1.0, abs(bound))).all(), told
+            assert (sense * (values - bound) >= -1e-12 * max(1.0, abs(bound))).all(), told
         if found.status == "refuted":
             pose = found.counterexample
             assert pose is not None
             assert region.contains(pose, robot.pose_names), told
             value = float(robot.margin(margin, pose))
             assert found.within_reach == bool(robot.margin("reach", pose) >= 0.0), told
-            assert not found.within_reach or value < bound, told
+            assert not found.within_reach or sense * (value - bound) < 0.0, told
