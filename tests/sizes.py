@@ -21,3 +21,11 @@ def few_or_many(few: int, many: int) -> pytest.MarkDecorator:
 def few_of(cases: Iterable[tuple[Any, ...]], quick: Callable[..., bool]) -> list[Any]:
     """The cases of a claim about many; those that are not quick are for `make test-long`."""
     return [case if quick(*case) else later(*case) for case in cases]
+
+
+QUICK = ("Heli4", "Redundant3T1R", "Peppermill", "Delta", "Planar3RRR")
+
+
+def every_mechanism(names: Iterable[str]) -> list[Any]:
+    """The names of all mechanisms; those of six freedoms, and those that are like another, are for `make test-long`."""
+    return [name if name in QUICK else later(name) for name in names]

@@ -9,11 +9,12 @@ from tests.kinematics.by_hand import OBLIQUE, ByHand
 from tests.kinematics.dynamics.test_motion import TIMES, pose_and_derivatives
 from tests.kinematics.multibody.mujoco_model import OpenTree
 from tests.kinematics.numeric import slope
+from tests.sizes import every_mechanism
 
 G = 9.80665
 PAYLOAD = 0.7
 E_Z = np.array([0.0, 0.0, 1.0])
-EVERY = pytest.mark.parametrize("name", MECHANISMS)
+EVERY = pytest.mark.parametrize("name", every_mechanism(MECHANISMS))
 
 
 def swinging(robot, t):

@@ -15,7 +15,6 @@ from kinematics import (
     GoughStewart,
     Heli4,
     InvalidValue,
-    Mechanism,
     Obstacle,
     PayloadHull,
     Peppermill,
@@ -28,6 +27,7 @@ from kinematics import (
 from kinematics.margins.clearance.solids import rooms
 from kinematics.mathematics import Convex, signed_distance
 from tests.kinematics.margins.bodies import between, components, corners, signed_by_fcl, signed_by_hull
+from tests.sizes import every_mechanism
 
 Shape = tuple[np.ndarray, Callable[[ca.SX], Convex]]
 
@@ -69,9 +69,9 @@ def test_signed_distances_are_those_of_the_hull_of_all_differences(
     assert (negative > 0) == (first is not segment or second is not segment)
 
 
-@pytest.mark.parametrize("mechanism", MECHANISMS.values(), ids=lambda kind: kind.__name__)
-def test_every_component_is_the_distance_that_a_collision_library_finds(mechanism: type[Mechanism]) -> None:
-    robot, rng = mechanism(), np.random.default_rng(5)
+@pytest.mark.parametrize("name", every_mechanism(MECHANISMS))
+def test_every_component_is_the_distance_that_a_collision_library_finds(name: str) -> None:
+    robot, rng = MECHANISMS[name](), np.random.default_rng(5)
     poses = robot.home + 0.03 * robot.pose_units() * rng.uniform(-1, 1, (40, len(robot.pose_names)))
     poses = poses[np.isfinite(robot.inverse(poses)).all(axis=1)][:2]
     pairs, _ = rooms(robot)

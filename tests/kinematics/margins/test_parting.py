@@ -37,6 +37,7 @@ def test_no_numbers_show_more_than_the_clearance(robot: Mechanism) -> None:
             assert np.array(rows(*above, numbers)).min() < 0.0
 
 
+@pytest.mark.long
 def test_neighbouring_rods_that_run_nearly_parallel_are_proved_apart() -> None:
     """3.5 mm between rods of 0.8 m: fixed directions need boxes of a third of a millimetre."""
     robot = Heli4()
