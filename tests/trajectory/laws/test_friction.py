@@ -10,12 +10,13 @@ import pytest
 
 from kinematics import DriveTrain, Heli4, InvalidValue, inverse_dynamics
 from kinematics.dynamics.drive_torque import GRAVITY
+from tests.kinematics.weighed import HELI4
 from tests.sizes import later
 from trajectory import AdeptCycle, Limits, LimitsExceeded, TimedPath, repair, time_optimal, verify
 
 
 def rough(**drives: float) -> Heli4:
-    return Heli4(inertia=Heli4.Inertia(drive_train=DriveTrain(**drives)))
+    return Heli4(inertia=replace(HELI4, drive_train=DriveTrain(**drives)))
 
 
 def test_the_law_with_coulomb_friction_is_on_the_edge_of_the_limit(
