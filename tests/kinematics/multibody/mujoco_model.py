@@ -27,7 +27,8 @@ PATHS = {
 def with_rods(robot, uniform):
     """Rods as bodies, or their masses at their ends; a hexapod's are 0.3 m long."""
     field, values = ("rod_length", (0.0, 0.3)) if isinstance(robot, GoughStewart) else ("rod_middle", (0.0, UNIFORM))
-    return robot.with_inertia(replace(robot.inertia, **{field: values[int(uniform)]}))
+    mass = {"rod_mass": 0.8} if isinstance(robot, GoughStewart) else {}  # a rod without length has none of its own
+    return robot.with_inertia(replace(robot.inertia, **{field: values[int(uniform)]}, **mass))
 
 
 def cycle(kind, half, times):
