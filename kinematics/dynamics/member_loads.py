@@ -17,13 +17,10 @@ from typing import NamedTuple
 import casadi as ca
 
 from kinematics.coordinates import is_length
-from kinematics.dynamics.chain_rule import derivatives_along
-from kinematics.dynamics.drive_torque import GRAVITY
+from kinematics.dynamics.proper_acceleration import ProperAcceleration
 from kinematics.dynamics.stiffness import transmission
 from kinematics.machine import Bodies, Cut, Material, Member, Section, Tube
 from kinematics.model import Mechanism
-
-_E_Z = ca.DM([0, 0, 1])
 
 
 class MemberLoad(NamedTuple):
@@ -148,7 +145,7 @@ def _case(
     columns: Callable[[ca.SX], ca.SX],
 ) -> LoadCase:
     """`columns` makes matrices (r, c) of vectors (r,) that are linear in accelerations and weights."""
-    model, felt = robot.model(), _Felt(robot, velocity, acceleration)
+    model, felt = robot.model(), ProperAcceleration(robot, velocity, acceleration)
     bodies = robot.bodies(model.pose, model.joints, model.g, payload)
     members = {member.name: member for member in robot.members(model.pose, model.joints, model.g)}
     whole, width = transmission(robot), getattr(model.g, "parallelogram_width", None)
@@ -202,34 +199,7 @@ def _by_pairs(matrix: ca.SX, counts: list[int], width: ca.SX | None = None) -> c
     return ca.sparsify(ca.horzcat(*columns))
 
 
-class _Felt:
-    """The acceleration of points, and the weight of 1 kg upward: what it takes to move a mass of 1 kg so [N]."""
-
-    def __init__(self, robot: Mechanism, velocity: ca.SX, acceleration: ca.SX) -> None:
-        model = self._model = robot.model()
-        m = model.joints.numel()
-        self._joint_rates = [ca.SX.sym(name, m) for name in ("joint_velocity", "joint_acceleration")]
-        given = zip(self._joint_rates, (velocity, acceleration), strict=True)
-        self._rates = [ca.vertcat(q, x) for q, x in given]
-        self._motion = derivatives_along(model.inverse, model.pose, [velocity, acceleration])[1:]
-        self.variable = ca.vertcat(model.joints, model.pose)
-
-    def __call__(self, point: ca.SX) -> ca.SX:
-        """(3,) of a point (3,) of joints and pose."""
-        result: ca.SX = self.second(point) + GRAVITY * _E_Z
-        return result
-
-    def second(self, place: ca.SX) -> ca.SX:
-        """The second time derivative of a point or an angle."""
-        return derivatives_along(place, self.variable, self._rates)[2]
-
-    def at_pose(self, expression: ca.SX) -> ca.SX:
-        """Without joints and their rates."""
-        found = self._model.at_pose(expression)
-        return ca.substitute(found, ca.vertcat(*self._joint_rates), ca.vertcat(*self._motion))
-
-
-def _load_on_freedoms(robot: Mechanism, bodies: Bodies, felt: _Felt, count: int) -> ca.SX:
+def _load_on_freedoms(robot: Mechanism, bodies: Bodies, felt: ProperAcceleration, count: int) -> ca.SX:
     """(f,) what moves and holds the platform's masses, with the ends of the rods on it."""
     model = robot.model()
     n, by_twist = model.pose.numel(), robot.pose_rate_map(model.pose)
@@ -253,7 +223,7 @@ def _load_on_freedoms(robot: Mechanism, bodies: Bodies, felt: _Felt, count: int)
     return result
 
 
-def _own(member: Member, root: bool, bodies: Bodies, robot: Mechanism, felt: _Felt) -> tuple[ca.SX, ca.SX]:
+def _own(member: Member, root: bool, bodies: Bodies, robot: Mechanism, felt: ProperAcceleration) -> tuple[ca.SX, ca.SX]:
     """Force (3,) and moment (3,) that the masses beyond an arm's root or tip exert there: its own, if it is the root,
     and the rods' ends at its tip. A member whose mass is a rod's in `bodies` counts as one that is clamped at its root.
     """

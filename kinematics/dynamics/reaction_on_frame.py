@@ -10,8 +10,8 @@ import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array, checked
-from kinematics.dynamics.chain_rule import derivatives_along
-from kinematics.dynamics.drive_torque import GRAVITY, require_payload
+from kinematics.dynamics.drive_torque import require_payload
+from kinematics.dynamics.proper_acceleration import ProperAcceleration
 from kinematics.evaluation import evaluate
 from kinematics.machine import Bodies
 from kinematics.model import Build, Mechanism, Model
@@ -59,30 +59,23 @@ def frame_reaction(
 
 
 def _frame_reaction(robot: Mechanism, model: Model) -> Build:
-    n, m = model.pose.shape[0], model.joints.shape[0]
-    rates = [ca.SX.sym(name, n) for name in ("velocity", "acceleration")]
-    joint_rates = [ca.SX.sym(f"joint_{name}", m) for name in ("velocity", "acceleration")]
-    payload = ca.SX.sym("payload")
-    both = [ca.vertcat(q, x) for q, x in zip(joint_rates, rates, strict=True)]
-    bodies = robot.bodies(model.pose, model.joints, model.g, payload)
-    found = _sum(bodies, ca.vertcat(model.joints, model.pose), both)
-    joint_motion = derivatives_along(model.inverse, model.pose, rates)[1:]
-    found = ca.substitute(model.at_pose(found), ca.vertcat(*joint_rates), ca.vertcat(*joint_motion))
+    rates = [ca.SX.sym(name, model.pose.numel()) for name in ("velocity", "acceleration")]
+    felt, payload = ProperAcceleration(robot, *rates), ca.SX.sym("payload")
+    found = felt.at_pose(_sum(robot.bodies(model.pose, model.joints, model.g, payload), felt))
     return [model.pose, *rates, payload], [found[:3], found[3:]]
 
 
-def _sum(bodies: Bodies, variable: ca.SX, rates: list[ca.SX]) -> ca.SX:
+def _sum(bodies: Bodies, felt: ProperAcceleration) -> ca.SX:
     """(6,) force and moment."""
     force, moment = ca.SX(3, 1), ca.SX(3, 1)
     for particle in bodies.all_particles():
-        acceleration = derivatives_along(particle.point, variable, rates)[2]
-        own = -particle.mass * (acceleration + ca.vertcat(0, 0, GRAVITY))
+        own = -particle.mass * felt(particle.point)
         force += own
         moment += ca.cross(particle.point, own)
     for rotor in bodies.rotors:
         if rotor.axis is not None:
-            speed = derivatives_along(rotor.angle, variable, rates)[1]
-            moving, faster = ca.vertcat(variable, rates[0]), ca.vertcat(*rates)
+            speed = ca.jtimes(rotor.angle, felt.variable, felt.rates[0])
+            moving, faster = ca.vertcat(felt.variable, felt.rates[0]), ca.vertcat(*felt.rates)
             moment -= ca.jtimes(rotor.inertia * speed * rotor.axis, moving, faster)
     result: ca.SX = ca.vertcat(force, moment)
     return result

@@ -26,7 +26,7 @@ class Section(NamedTuple):
     def of(cls, tube: Tube) -> Section:
         """Of a tube, or of a solid bar, whose wall is its radius."""
         inside = tube.radius - tube.wall
-        return cls(math.pi * (tube.radius**2 - inside**2), math.pi / 4 * (tube.radius**4 - inside**4))
+        return cls(tube.area, math.pi / 4 * (tube.radius**4 - inside**4))
 
 
 class Beam(NamedTuple):

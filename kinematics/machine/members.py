@@ -70,7 +70,7 @@ class Member(NamedTuple):
     Attributes:
         name: what people call it, such as "rod 3 b".
         joints: what holds it, by any names. Two members that share a joint are joined, and may touch.
-        material: which field of `Structure` it is made of.
+        material: which field of `Structure` it is made of; empty for what belongs to the base or slides on it.
         shapes: what it consists of.
         link: the link of `bodies` that it is part of, where that has another name.
     """

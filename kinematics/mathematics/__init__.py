@@ -7,7 +7,7 @@ from kinematics.mathematics.double_roots import not_below_zero
 from kinematics.mathematics.homotopy import refine, track
 from kinematics.mathematics.jacobi_rotations import singular_values
 from kinematics.mathematics.linear_forms import LinearForms
-from kinematics.mathematics.orientation import angles, rotation, turn
+from kinematics.mathematics.orientation import angles, rotation, rotation_symbolic, turn
 from kinematics.mathematics.polynomials import product, real_roots
 from kinematics.mathematics.positive_definite import (
     cholesky,
@@ -42,6 +42,7 @@ __all__ = [
     "refine",
     "root_inverse",
     "rotation",
+    "rotation_symbolic",
     "row_sums",
     "segment_distances",
     "shortest_way",

@@ -30,11 +30,6 @@ class Convex(NamedTuple):
     faces: tuple[tuple[int, ...], ...] = ()
 
     @classmethod
-    def segment(cls, start: ca.SX, end: ca.SX) -> Convex:
-        """Between two points (3,)."""
-        return cls(ca.horzcat(start, end))
-
-    @classmethod
     def polygon(cls, outline: ca.SX) -> Convex:
         """Flat and convex, with its corners (3, k) in order."""
         return cls(outline, (tuple(range(outline.shape[1])),))

@@ -1,7 +1,8 @@
-"""Orientations as arrays: R = Rz(yaw) Ry(pitch) Rx(roll), and rotations about any axis."""
+"""Orientations: R = Rz(yaw) Ry(pitch) Rx(roll), and rotations about any axis."""
 
 from __future__ import annotations
 
+import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
@@ -17,6 +18,16 @@ def rotation(angles: Array) -> Array:
         [-sp, cp * sr, cp * cr],
     ]
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def rotation_symbolic(angles: ca.SX) -> ca.SX:
+    """(3,) roll, pitch, yaw -> (3, 3)."""
+    (cr, cp, cy), (sr, sp, sy) = ([f(angles[k]) for k in range(3)] for f in (ca.cos, ca.sin))
+    return ca.vertcat(
+        ca.horzcat(cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
+        ca.horzcat(sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
+        ca.horzcat(-sp, cp * sr, cp * cr),
+    )
 
 
 def angles(matrix: Array) -> Array:

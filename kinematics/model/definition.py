@@ -120,7 +120,7 @@ class Definition(ABC):
 
     @abstractmethod
     def members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
-        """The straight bodies with their thickness. Those that share no joint must not touch: `clearance`."""
+        """Bodies whose masses follow from their sections. Those that share no joint must not touch: `clearance`."""
 
     def statics(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[LimbStatics]:
         """What each limb transmits to the platform, and how it gives way: `stiffness`. By default only drives do."""
@@ -143,6 +143,10 @@ class Definition(ABC):
         Those of the base share the joint "base".
         """
         return []
+
+    def all_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
+        """`members` and `base_members`."""
+        return [*self.members(pose, joints, g), *self.base_members(pose, joints, g)]
 
     @classmethod
     def drives(cls, g: SimpleNamespace) -> ca.SX:  # noqa: ARG003

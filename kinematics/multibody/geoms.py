@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from xml.etree import ElementTree as Xml
 
+import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array
-from kinematics.machine import Member, Plate, Reference, Tube
+from kinematics.machine import Member, Reference, Tube
+from kinematics.multibody.placed_shapes import PlacedShape
 
 _WEIGHTLESS = {"mass": "0", "contype": "0", "conaffinity": "0"}
 
@@ -27,21 +29,15 @@ def add_geoms(members: list[Member], bodies: dict[str, Xml.Element], asset: Xml.
         for k, shape in enumerate(member.shapes if body is not None else ()):
             name = member.name if len(member.shapes) == 1 else f"{member.name}, {k + 1}"
             geom = Xml.SubElement(body, "geom", _WEIGHTLESS, name=name)  # type: ignore[arg-type]
+            corners, around = np.array(reference(shape.corners)).T, float(reference(shape.around))
             if isinstance(shape, Tube):
-                ends = np.array([reference(point) for point in (shape.start, shape.end)]).ravel()
-                geom.attrib.update(type="capsule", fromto=_text(ends), size=_text(np.array(reference(shape.radius))))
+                geom.attrib.update(type="capsule", fromto=every_digit(corners), size=every_digit(around))
             else:
-                Xml.SubElement(asset, "mesh", name=name, vertex=_text(_prism(shape, reference)))
+                sides = PlacedShape(member.name, member.material, corners, around).sides()
+                Xml.SubElement(asset, "mesh", name=name, vertex=every_digit(np.vstack(sides)))
                 geom.attrib.update(type="mesh", mesh=name)
 
 
-def _prism(plate: Plate, reference: Reference) -> Array:
-    """(2 k, 3) the corners of both faces."""
-    corners, thickness = np.array(reference(plate.outline)).T, float(reference(plate.thickness))
-    middle = corners.mean(axis=0)
-    normal = np.linalg.svd(corners - middle)[2][2] * thickness / 2
-    return np.vstack([corners - normal, corners + normal])
-
-
-def _text(values: Array) -> str:
-    return " ".join(f"{v:.17g}" for v in values.ravel())
+def every_digit(values: ca.DM | Array | float) -> str:
+    """Numbers as an attribute."""
+    return " ".join(f"{v:.17g}" for v in np.array(values, dtype=float).ravel())

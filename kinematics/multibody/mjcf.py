@@ -17,7 +17,7 @@ from kinematics.arrays import Array
 from kinematics.dynamics import GRAVITY
 from kinematics.machine import Link
 from kinematics.model import Mechanism
-from kinematics.multibody.geoms import add_geoms
+from kinematics.multibody.geoms import add_geoms, every_digit
 from kinematics.multibody.open_tree import OpenTree, open_tree
 
 _STEP = 1e-4  # [s]
@@ -48,8 +48,7 @@ def mjcf(robot: Mechanism, pose: Array, payload: float = 0.0) -> str:
     _close(cut, elements, tendons, equality)
     _drive(robot, cut, elements, tendons, Xml.SubElement(root, "actuator"))
     model, asset = robot.model(), Xml.SubElement(root, "asset")
-    symbols = model.pose, model.joints, model.g
-    members = [*robot.members(*symbols), *robot.base_members(*symbols)]
+    members = robot.all_members(model.pose, model.joints, model.g)
     add_geoms(members, elements | {"": world}, asset, cut.reference)
     for element in (tendons, equality, asset):
         if not len(element):
@@ -65,7 +64,9 @@ def _links(world: Xml.Element, cut: OpenTree) -> dict[str, Xml.Element]:
         body = Xml.SubElement(elements[link.parent] if link.parent else world, "body", name=link.name)
         elements[link.name] = body
         for joint in link.joints:
-            places = {name: _text(cut.reference(getattr(joint, name))) for name in ("axis", "anchor", "coordinate")}
+            places = {
+                name: every_digit(cut.reference(getattr(joint, name))) for name in ("axis", "anchor", "coordinate")
+            }
             elements[f"joint {joint.name}"] = Xml.SubElement(
                 body, "joint", name=joint.name, type=joint.kind,
                 axis=places["axis"], pos=places["anchor"], ref=places["coordinate"],
@@ -91,24 +92,24 @@ def _inertial(link: Link, cut: OpenTree) -> Xml.Element:
     moments = np.maximum(moments.sum() - moments, 0.0)
     moments[0] = min(moments[0], moments[1] + moments[2])  # the largest; equal for flat bodies, but for rounding
     return Xml.Element(
-        "inertial", pos=_text(centre), mass=_text(masses.sum()), quat=_text(quaternion),
-        diaginertia=_text(moments),
+        "inertial", pos=every_digit(centre), mass=every_digit(masses.sum()), quat=every_digit(quaternion),
+        diaginertia=every_digit(moments),
     )  # fmt: skip
 
 
 def _close(cut: OpenTree, elements: dict[str, Xml.Element], tendons: Xml.Element, equality: Xml.Element) -> None:
     """Couplings of joints, shared points, and rods that are no bodies."""
     for follower, leader, ratio in cut.tree.couplings:
-        line = f"0 {_text(cut.reference(ratio))} 0 0 0"
+        line = f"0 {every_digit(cut.reference(ratio))} 0 0 0"
         Xml.SubElement(equality, "joint", joint1=follower, joint2=leader, polycoef=line).attrib.update(_STIFF)
     for (first, second), point in cut.tree.connections:
-        anchor = _text(cut.reference(point))
+        anchor = every_digit(cut.reference(point))
         Xml.SubElement(equality, "connect", body1=first, body2=second, anchor=anchor).attrib.update(_STIFF)
     for k, rod in enumerate([] if cut.rods_are_bodies else cut.bodies.rods):
         tendon = Xml.SubElement(tendons, "spatial", name=f"rod {k + 1}")
         for link, point, side in zip(rod.links, (rod.start, rod.end), "ab", strict=True):
             site = f"rod {k + 1}{side}"
-            Xml.SubElement(elements[link], "site", name=site, pos=_text(cut.reference(point)))
+            Xml.SubElement(elements[link], "site", name=site, pos=every_digit(cut.reference(point)))
             Xml.SubElement(tendon, "site", site=site)
         Xml.SubElement(equality, "tendon", tendon1=f"rod {k + 1}").attrib.update(_STIFF)
 
@@ -131,24 +132,19 @@ def _drive(
         if name not in elements:
             elements[name] = Xml.SubElement(tendons, "fixed", name=name)
             for k in used:
-                Xml.SubElement(elements[name], "joint", joint=names[k], coef=_text(weights[k]))
+                Xml.SubElement(elements[name], "joint", joint=names[k], coef=every_digit(weights[k]))
         return elements[name], 1.0
 
     for rotor in cut.bodies.rotors:
         element, rate = carrier(rotor.angle)
         inertia = float(cut.reference(ca.SX(rotor.inertia)))
-        element.set("armature", _text(float(element.get("armature", 0.0)) + inertia * rate**2))
+        element.set("armature", every_digit(float(element.get("armature", 0.0)) + inertia * rate**2))
     for k, angle in enumerate(ca.vertsplit(model.drives @ model.joints)):
         element, rate = carrier(angle)
         for attribute, value in (("damping", viscous[k] * rate**2), ("frictionloss", coulomb[k] * abs(rate))):
             if value:
-                element.set(attribute, _text(value))
+                element.set(attribute, every_digit(value))
                 element.set("solreffriction", _STIFF["solref"])  # else strong damping turns its sign
         kind = "joint" if element.tag == "joint" else "tendon"
         on = {kind: element.get("name", "")}
-        Xml.SubElement(actuators, "motor", on, name=robot.actuator_names[k], gear=_text(gear[k] * rate))
-
-
-def _text(values: ca.DM | Array | float) -> str:
-    """Every digit."""
-    return " ".join(f"{v:.17g}" for v in np.array(values, dtype=float).ravel())
+        Xml.SubElement(actuators, "motor", on, name=robot.actuator_names[k], gear=every_digit(gear[k] * rate))

@@ -33,10 +33,11 @@ class OpenTree(NamedTuple):
 
     def particles(self) -> list[Particle]:
         """Every particle on its link, its mass a number."""
-        own = self.bodies.all_particles()
         if self.rods_are_bodies:
             rods = range(len(self.bodies.rods))
             own = [*self.bodies.particles, *(p for k in rods for p in self.bodies.rod_particles(k))]
+        else:
+            own = self.bodies.all_particles()
         return [p._replace(mass=float(self.reference(ca.SX(p.mass)))) for p in own]
 
 

@@ -27,6 +27,11 @@ class PlacedShape(NamedTuple):
     corners: Array
     around: float
 
+    def sides(self) -> tuple[Array, Array]:
+        """Of a plate, the corners of both faces, (k, 3) each."""
+        normal = np.linalg.svd(self.corners - self.corners.mean(axis=0))[2][2] * self.around
+        return self.corners - normal, self.corners + normal
+
 
 def placed_shapes(robot: Mechanism, pose: Array) -> list[PlacedShape]:
     """The shapes of all members and of the base at a pose (n,); NaN where a limb cannot reach."""
@@ -41,8 +46,7 @@ def placed_shapes(robot: Mechanism, pose: Array) -> list[PlacedShape]:
 
 
 def _all(robot: Mechanism, model: Model) -> list[tuple[Member, Tube | Plate]]:
-    names = model.pose, model.joints, model.g
-    members = [*robot.members(*names), *robot.base_members(*names)]
+    members = robot.all_members(model.pose, model.joints, model.g)
     return [(member, shape) for member in members for shape in member.shapes]
 
 

@@ -16,6 +16,7 @@ from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
 from kinematics.machine import TURN, Bodies, GeometryRecord, Member, angle, length
 from kinematics.margins import ANGLE_ACCURACY, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
+from kinematics.mathematics import rotation_symbolic
 from kinematics.model import Build, FviBounds, Model, by_name
 from kinematics.robots.gough_stewart import (
     GoughStewart,
@@ -131,13 +132,13 @@ class Hexa(SixLegs, RotaryLimbs):
     @staticmethod
     def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """(3, 6) B_i."""
-        result: ca.SX = columns(pose[:3], 6) + SixLegs.rotation(pose) @ ca.reshape(g.platform_points, 3, 6)
+        result: ca.SX = columns(pose[:3], 6) + rotation_symbolic(pose[3:]) @ ca.reshape(g.platform_points, 3, 6)
         return result
 
     @classmethod
     def platform_axes(cls, pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """Unit directions parallel to the arms' axes when the platform is not turned."""
-        return SixLegs.rotation(pose) @ cls.limbs(g).axes()
+        return rotation_symbolic(pose[3:]) @ cls.limbs(g).axes()
 
     @staticmethod
     def _as_hexapod(joints: ca.SX, g: SimpleNamespace) -> SimpleNamespace:

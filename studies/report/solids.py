@@ -13,9 +13,7 @@ def faces(shape: PlacedShape) -> list[Array]:
     """(k, 3) each: the outside of a tube or of a plate, without the rounding of its ends and rim."""
     if len(shape.corners) == 2:
         return _prism(*_rings(shape))
-    corners = shape.corners
-    normal = np.linalg.svd(corners - corners.mean(axis=0))[2][2] * shape.around
-    return _prism(corners - normal, corners + normal)
+    return _prism(*shape.sides())
 
 
 def _rings(shape: PlacedShape) -> tuple[Array, Array]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from kinematics.errors import InvalidValue
 from kinematics.machine import Member, Obstacle, PayloadHull, Plate, Tube
-from kinematics.mathematics import Convex, signed_distance
+from kinematics.mathematics import Convex, rotation_symbolic, signed_distance
 from kinematics.model import Mechanism
 
 _BASE = "base"  # the joint of all that does not move
@@ -21,9 +21,8 @@ _SIDES = 8  # of the polygon around a flat payload
 
 
 class Solid(NamedTuple):
-    """All points within `radius` of `core`, at a pose. `number` is its place in the list of solids."""
+    """All points within `radius` of `core`, at a pose."""
 
-    number: int
     member: Member
     core: Convex
     radius: ca.SX
@@ -87,14 +86,14 @@ def rooms(robot: Mechanism) -> tuple[list[Pair], list[Walled]]:
         InvalidValue: a member joins nothing, or no member is the mechanism's `tool_member`.
     """
     model, around = robot.model(), robot.surroundings
-    members = robot.members(model.pose, model.joints, model.g)
-    members += robot.base_members(model.pose, model.joints, model.g)
+    members = robot.all_members(model.pose, model.joints, model.g)
     _require_joined(robot, members)
     hull = [] if around.payload_hull is None else [_hull_member(robot, around.payload_hull)]
     solids = _solids(robot, [*members, *hull])
     boxes = [
-        Solid(len(solids) + i, Member(box.name, (_BASE,), "", ()), Convex.box(box.low, box.high), ca.SX(0))
-        for i, box in enumerate(box for box in around.obstacles if not box.inside)
+        Solid(Member(box.name, (_BASE,), "", ()), Convex.box(box.low, box.high), ca.SX(0))
+        for box in around.obstacles
+        if not box.inside
     ]
     held = {_HULL, robot.tool_member}
     pairs = [
@@ -148,18 +147,13 @@ def _solids(robot: Mechanism, members: Sequence[Member]) -> list[Solid]:
     shapes = [(member, shape) for member in members for shape in member.shapes]
     if not shapes:
         return []
-    points = [s.outline if isinstance(s, Plate) else ca.horzcat(s.start, s.end) for _, s in shapes]
-    at_pose = ca.cse(robot.model().at_pose(ca.horzcat(*points)))
-    found: list[Solid] = []
-    first = 0
-    for (member, shape), corners in zip(shapes, points, strict=True):
-        placed = at_pose[:, first : first + corners.shape[1]]
-        first += corners.shape[1]
-        if isinstance(shape, Plate):
-            found.append(Solid(len(found), member, Convex.polygon(placed), shape.thickness / 2))
-        else:
-            found.append(Solid(len(found), member, Convex(placed), shape.radius))
-    return found
+    at_pose = ca.cse(robot.model().at_pose(ca.horzcat(*(shape.corners for _, shape in shapes))))
+    ends = np.cumsum([0, *(shape.corners.shape[1] for _, shape in shapes)]).tolist()
+    placed = ca.horzsplit(at_pose, ends)
+    return [
+        Solid(member, Convex.polygon(corners) if isinstance(shape, Plate) else Convex(corners), shape.around)
+        for (member, shape), corners in zip(shapes, placed, strict=True)
+    ]
 
 
 def _hull_member(robot: Mechanism, hull: PayloadHull) -> Member:
@@ -190,13 +184,7 @@ def _tool_frame(robot: Mechanism) -> tuple[ca.SX, ca.SX]:
     point = ca.vertcat(*(pose[names.index(name)] if name in names else 0 for name in ("x", "y", "z")))
     if "roll" not in names:
         return point, ca.SX.eye(3)
-    (cr, sr), (cp, sp), (cy, sy) = (
-        (ca.cos(pose[i]), ca.sin(pose[i])) for i in map(names.index, ("roll", "pitch", "yaw"))
-    )
-    about_z = ca.vertcat(ca.horzcat(cy, -sy, 0), ca.horzcat(sy, cy, 0), ca.horzcat(0, 0, 1))
-    about_y = ca.vertcat(ca.horzcat(cp, 0, sp), ca.horzcat(0, 1, 0), ca.horzcat(-sp, 0, cp))
-    about_x = ca.vertcat(ca.horzcat(1, 0, 0), ca.horzcat(0, cr, -sr), ca.horzcat(0, sr, cr))
-    return point, about_z @ about_y @ about_x
+    return point, rotation_symbolic(pose[[names.index(name) for name in ("roll", "pitch", "yaw")]])
 
 
 def _walls(robot: Mechanism) -> list[tuple[str, tuple[tuple[int, float, float], ...]]]:

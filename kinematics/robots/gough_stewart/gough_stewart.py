@@ -29,6 +29,7 @@ from kinematics.machine import (
     shared_joints,
 )
 from kinematics.margins import ANGLE_ACCURACY, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
+from kinematics.mathematics import rotation_symbolic
 from kinematics.model import FviBounds, Mechanism, Mode, Model, by_name
 from kinematics.robots.gough_stewart.forward import ForwardSolution, assembly_modes, matched_pose
 from kinematics.robots.gough_stewart.geometry import GoughStewartGeometry, GoughStewartInertia, GoughStewartRanges
@@ -89,12 +90,12 @@ class GoughStewart(SixLegs):
     @staticmethod
     def platform_points(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """(3, 6) B_i in R_f."""
-        return ca.repmat(pose[:3], 1, 6) + GoughStewart.rotation(pose) @ GoughStewart.tool_points(g)
+        return ca.repmat(pose[:3], 1, 6) + rotation_symbolic(pose[3:]) @ GoughStewart.tool_points(g)
 
     @staticmethod
     def legs(pose: ca.SX, g: SimpleNamespace, twist: ca.SX | None = None) -> ca.SX:
         """(3, 6) A_i B_i in R_f; [8.10]. With a small twist: after that displacement, to first order."""
-        ends = GoughStewart.rotation(pose) @ GoughStewart.tool_points(g)
+        ends = rotation_symbolic(pose[3:]) @ GoughStewart.tool_points(g)
         place = pose[:3]
         if twist is not None:
             ends, place = ends + ca.skew(twist[3:]) @ ends, place + twist[:3]
@@ -238,7 +239,7 @@ class GoughStewart(SixLegs):
         rest_pose, legs = ca.SX(ca.DM(rest)), self.legs(pose, g)
         rests = self.legs(rest_pose, g)
         axes = rests @ ca.diag(1 / _lengths(rests))
-        turned = self.rotation(pose) @ (self.rotation(rest_pose).T @ axes)
+        turned = rotation_symbolic(pose[3:]) @ (rotation_symbolic(rest_pose[3:]).T @ axes)
         return [
             PassiveJoint(held[:, i], legs[:, i], joints[i], end, swivels=False)
             for end, held in enumerate((axes, turned))

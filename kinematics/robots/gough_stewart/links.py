@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import casadi as ca
 
 from kinematics.machine import AXES, ORIGIN, Connection, Link, Reference, Tree, TreeJoint, universal
+from kinematics.mathematics import rotation_symbolic
 
 if TYPE_CHECKING:
     from kinematics.robots.gough_stewart.gough_stewart import GoughStewart
@@ -23,7 +24,7 @@ def links(robot: GoughStewart, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, r
         slide = TreeJoint(name, "slide", along, ORIGIN, joints[i])
         chain.append(Link(f"leg {i + 1}", None, (*universal(f"leg {i + 1}", base[:, i], along, reference), slide)))
         connections.append(Connection((f"leg {i + 1}", "platform"), ends[:, i]))
-    turned = robot.rotation(pose)
+    turned = rotation_symbolic(pose[3:])
     level = ca.vertcat(-ca.sin(pose[5]), ca.cos(pose[5]), 0)
     axes = zip(("yaw", "pitch", "roll"), (AXES[2], level, turned[:, 0]), (5, 4, 3), strict=True)
     slides = (TreeJoint("xyz"[k], "slide", AXES[k], ORIGIN, pose[k]) for k in range(3))

@@ -44,16 +44,6 @@ class SixLegs(Mechanism):
         """(k,) mean leg length, and the largest number that rounding of an error comes from [m]."""
 
     @staticmethod
-    def rotation(pose: ca.SX) -> ca.SX:
-        """(3, 3) R = Rz(yaw) Ry(pitch) Rx(roll)."""
-        (cr, cp, cy), (sr, sp, sy) = ([f(pose[3 + k]) for k in range(3)] for f in (ca.cos, ca.sin))
-        return ca.vertcat(
-            ca.horzcat(cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
-            ca.horzcat(sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
-            ca.horzcat(-sp, cp * sr, cp * cr),
-        )
-
-    @staticmethod
     def pose_rate_map(pose: ca.SX) -> ca.SX:
         """Euler-angle rates from omega; not defined where the pitch is a quarter turn."""
         cp, sp, cy, sy = ca.cos(pose[4]), ca.sin(pose[4]), ca.cos(pose[5]), ca.sin(pose[5])

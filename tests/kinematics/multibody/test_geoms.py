@@ -17,7 +17,7 @@ def test_mujoco_measures_our_clearance_between_the_shapes_of_the_export(kind):
     robot, rng = kind(), np.random.default_rng(5)
     symbols = robot.model()
     names = symbols.pose, symbols.joints, symbols.g
-    members = [*robot.members(*names), *robot.base_members(*names)]
+    members = robot.all_members(*names)
     pose = robot.home + 0.02 * rng.uniform(-1, 1, len(robot.pose_names))
     model, data = loaded(robot, pose, 0.0)
     mujoco.mj_forward(model, data)
