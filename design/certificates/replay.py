@@ -47,11 +47,9 @@ def replay(
     """
     _same("mechanism", certificate.mechanism, type(robot).__name__)
     _same("geometry", certificate.digest, robot.geometry.digest)
-    _same(
-        "joint ranges or working mode",
-        certificate.conditions,
-        robot.conditions_digest(robot.margin_named(certificate.margin).records),
-    )
+    asked = robot.margin_named(certificate.margin)
+    conditions = " or ".join(["joint ranges", "working mode", *asked.records])
+    _same(conditions, certificate.conditions, robot.conditions_digest(asked.records))
     _same("version", certificate.version, version("linkwright"))
     _same("edition", certificate.edition, EDITION)
     if region is not None:
@@ -62,7 +60,6 @@ def replay(
         _same("FVI bounds", certificate.bounds, bounds)
     if characteristic_length is not None:
         _same("characteristic length", certificate.characteristic_length, characteristic_length)
-    asked = robot.margin_named(certificate.margin)
     _same("kind of bound", certificate.bound.sign, Bound.weakest(asked.sense).sign)
     if at_least is not None or at_most is not None:
         wanted = asked.bound(at_least, at_most)

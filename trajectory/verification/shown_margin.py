@@ -73,7 +73,7 @@ def prove_shown(robot: Mechanism, path: Path | InTime, name: str, edges: Array) 
         stuck = still & ((high - low <= _SMALLEST * path.length) | (count > _MOST))
         if stuck.any():
             at = float(middle[np.argmin(np.where(stuck, least, np.inf))])
-            raise _refused(robot, path, name, at, 0.0, proved=False)
+            raise _refused(robot, path, name, at, -np.inf, proved=False)
         low, high, middle = low[still], high[still], middle[still]
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
     return bound, count
