@@ -27,7 +27,10 @@ class Requirement:
     @property
     def bound(self) -> Bound:
         """The value that the margin must reach."""
-        return Bound(self.at_least) if self.at_least is not None else Bound(self.at_most or 0.0, -1)
+        if self.at_least is not None:
+            return Bound(self.at_least)
+        assert self.at_most is not None
+        return Bound(self.at_most, -1)
 
 
 @dataclass(frozen=True)
