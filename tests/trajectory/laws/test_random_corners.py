@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from kinematics import Delta, GoughStewart, Heli4, LinkwrightError, Mechanism, Par4, Planar3RRR, inverse_dynamics
+from tests.design.scaled import scaled
 from trajectory import Limits, RoundedPath, certify_path, jerk_limited, pieces, repair, time_optimal
 
 pytestmark = pytest.mark.long
@@ -21,20 +22,6 @@ BOXES: dict[type, tuple[Places, Places, float]] = {  # places, over the robot's 
     Planar3RRR: ((-0.08, -0.08), (0.08, 0.08), 0.3),
     GoughStewart: ((-0.08, -0.08, 0.54), (0.08, 0.08, 0.68), 0.15),
 }
-LENGTHS = ("radius", "length", "lengths", "step", "offset", "pitch", "width", "points")
-
-
-def sized(kind: type[Mechanism], scale: float) -> Mechanism:
-    """The prototype, all its lengths times the scale."""
-    usual = kind().geometry
-    fields = {name: getattr(usual, name) for name in usual.__dataclass_fields__ if name.endswith(LENGTHS)}
-    return kind(replace(usual, **{name: _times(value, scale) for name, value in fields.items()}))
-
-
-def _times(value: object, scale: float) -> object:
-    if isinstance(value, tuple):
-        return tuple(_times(v, scale) for v in value)
-    return value * scale if isinstance(value, float) else value
 
 
 def random_path(rng: np.random.Generator, robot: Mechanism, scale: float) -> RoundedPath:
@@ -53,7 +40,7 @@ def questions() -> Iterator[tuple[str, Mechanism, RoundedPath, Limits, float]]:
     while found < COUNT:
         kind = kinds[found % len(kinds)]
         scale = 1.0 if kind is GoughStewart else float(10.0 ** rng.uniform(-2.0, 1.0))
-        robot, payload = sized(kind, scale), float(rng.uniform(0.0, 2.0))
+        robot, payload = scaled(kind(), scale), float(rng.uniform(0.0, 2.0))
         path = random_path(rng, robot, scale)
         try:
             certify_path(robot, path)
