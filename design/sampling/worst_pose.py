@@ -133,8 +133,9 @@ def descend(value, unit: Array, step: Array, rounds: int = 40) -> tuple[Array, A
 
 def _distinct(poses: Array, extent: Array) -> list[int]:
     """Indices of poses that are further than a hundredth of the region from every earlier one."""
-    kept: list[int] = []
-    for i, pose in enumerate(poses):
-        if all(np.abs((pose - poses[j]) / extent).max() > 0.01 for j in kept):
-            kept.append(i)
+    left, kept = np.arange(len(poses)), []
+    while len(left):
+        first = left[0]
+        kept.append(int(first))
+        left = left[np.abs((poses[left] - poses[first]) / extent).max(axis=1) > 0.01]
     return kept

@@ -16,10 +16,10 @@ from typing import TypeVar
 import casadi as ca
 import numpy as np
 
-from kinematics import Array, BlockProgram, bulk, derivatives_along
+from kinematics import Array, BlockProgram, bulk, derivatives_along, evaluate
 
 Number = TypeVar("Number", Array, ca.SX)
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)  # exact to rounding: the integrands are entire functions
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)  # exact to rounding: the integrands are entire functions
 _NODES, _WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2
 
 
@@ -40,17 +40,30 @@ def septic(w: Number) -> Number:
     return result
 
 
+@cache
+def _turned_program() -> BlockProgram:
+    """u and alpha -> C and S (2,)."""
+    u, alpha = ca.SX.sym("u"), ca.SX.sym("alpha")
+    angles = alpha * quintic(u * ca.SX(_NODES))
+    sums = [ca.dot(_WEIGHTS, of(angles)) for of in (ca.cos, ca.sin)]
+    return bulk(ca.Function("turned", [u, alpha], [u * ca.vertcat(*sums)]))
+
+
 def turned(u: Array, alpha: Array) -> tuple[Array, Array]:
     """Integrals C and S of cos and sin of alpha S5 over [0, u], (...,) each, by Gauss-Legendre quadrature."""
-    angle = np.asarray(alpha)[..., None] * quintic(u[..., None] * _NODES)
-    return u * (np.cos(angle) @ _WEIGHTS), u * (np.sin(angle) @ _WEIGHTS)
+    bent = alpha != 0.0
+    c, s = np.array(u), np.zeros_like(u)  # as on a straight leg
+    if bent.any():
+        (found,) = evaluate(_turned_program(), u[bent][:, None], alpha[bent][:, None])
+        c[bent], s[bent] = found.T
+    return c, s
 
 
 def corner_length(alpha: float, blend: float) -> float:
     """Arc length l [m] of a corner that turns by alpha in [0, pi) [rad] and takes `blend` [m] off both legs."""
     if alpha == 0.0:
         return 2 * blend
-    return blend * float(np.sin(alpha) / turned(np.array(1.0), np.array(alpha))[1])
+    return blend * float(np.sin(alpha) / turned(np.array([1.0]), np.array([alpha]))[1][0])
 
 
 @cache

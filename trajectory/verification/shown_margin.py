@@ -105,7 +105,7 @@ def _programs(robot: Mechanism, name: str) -> _Programs:
     inputs = [model.pose, ca.vec(shown.scaling), claim.bound, model.geometry, others]
 
     def program(*outputs: ca.SX) -> BoxProgram:
-        function = ca.Function("claims", inputs, ca.cse([ca.densify(o) for o in outputs]))
+        function = ca.Function("claims", inputs, [ca.densify(o) for o in outputs])
         return BoxProgram.of(Program.of(function), numbers)
 
     gradient = ca.jacobian(shown.expressions, model.pose)

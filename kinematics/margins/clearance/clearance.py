@@ -31,18 +31,16 @@ class Clearance(Margin):
 
     def components(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
         """One component for each pair of shapes, and for each shape and what is around it; infinite without any."""
-        pairs, walled = rooms(robot)
-        found = [pair.distance for pair in pairs] + [ca.mmin(room.distances) for room in walled]
-        return ca.vertcat(*found) if found else ca.SX(ca.inf)
+        return rooms(robot).distances
 
     def places(self, robot: Mechanism) -> list[str] | None:
         """The names of both members."""
-        pairs, walled = rooms(robot)
+        pairs, walled, _ = rooms(robot)
         return [pair.place for pair in pairs] + [room.place for room in walled] or None
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:  # noqa: ARG002
         """Each pair is parted by a direction (see `parting.py`), and each corner is on its side of each wall."""
-        apart, walled = rooms(robot)
+        apart, walled, _ = rooms(robot)
         pairs = sorted(_parted(robot, apart, inside), key=lambda pair: isinstance(pair, Turning))
         numbers = ca.SX.sym("direction", sum(pair.numbers for pair in pairs))
         rows, first = [room.distances - claim.bound for room in walled], 0
@@ -56,7 +54,7 @@ class Clearance(Margin):
         return ToShow(ca.vertcat(*rows), numbers, seen, lambda at: chosen(at, fixed)[..., None])
 
 
-def _parted(robot: Mechanism, pairs: list[Pair], inside: Array) -> list[Fixed | Turning]:
+def _parted(robot: Mechanism, pairs: tuple[Pair, ...], inside: Array) -> list[Fixed | Turning]:
     """Each pair as it is parted.
 
     Args:

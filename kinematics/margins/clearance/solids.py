@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from itertools import combinations
 from typing import NamedTuple
 
@@ -12,7 +13,7 @@ import numpy as np
 from kinematics.errors import InvalidValue
 from kinematics.machine import Member, Obstacle, PayloadHull, Plate, Tube
 from kinematics.mathematics import Convex, rotation_symbolic, signed_distance
-from kinematics.model import Mechanism
+from kinematics.model import Mechanism, Model
 
 _BASE = "base"  # the joint of all that does not move
 _HULL = "payload"
@@ -79,13 +80,26 @@ class Walled(NamedTuple):
         return ca.vertcat(*(side * (corners[i, :].T - at) for i, at, side in self.walls)) - self.solid.radius
 
 
-def rooms(robot: Mechanism) -> tuple[list[Pair], list[Walled]]:
+class Rooms(NamedTuple):
+    """Pairs, what is beside walls, and the distances of both in this order, (k,); infinite without any."""
+
+    pairs: tuple[Pair, ...]
+    walled: tuple[Walled, ...]
+    distances: ca.SX
+
+
+def rooms(robot: Mechanism) -> Rooms:
     """Everything that must not touch, at a pose.
 
     Raises:
         InvalidValue: a member joins nothing, or no member is the mechanism's `tool_member`.
     """
-    model, around = robot.model(), robot.surroundings
+    return _rooms(robot, robot.model())
+
+
+@lru_cache(maxsize=16)
+def _rooms(robot: Mechanism, model: Model) -> Rooms:
+    around = robot.surroundings
     members = robot.all_members(model.pose, model.joints, model.g)
     _require_joined(robot, members)
     hull = [] if around.payload_hull is None else [_hull_member(robot, around.payload_hull)]
@@ -96,13 +110,15 @@ def rooms(robot: Mechanism) -> tuple[list[Pair], list[Walled]]:
         if not box.inside
     ]
     held = {_HULL, robot.tool_member}
-    pairs = [
+    pairs = tuple(
         Pair(one, two)
         for one, two in combinations([*solids, *boxes], 2)
         if not set(one.member.joints) & set(two.member.joints) and {one.member.name, two.member.name} != held
-    ]
+    )
     moving = [solid for solid in solids if solid.moves]
-    return pairs, [Walled(solid, name, walls) for name, walls in _walls(robot) for solid in moving]
+    walled = tuple(Walled(solid, name, walls) for name, walls in _walls(robot) for solid in moving)
+    found = [pair.distance for pair in pairs] + [ca.mmin(room.distances) for room in walled]
+    return Rooms(pairs, walled, ca.vertcat(*found) if found else ca.SX(ca.inf))
 
 
 class Lowest(NamedTuple):

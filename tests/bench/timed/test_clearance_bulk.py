@@ -31,7 +31,7 @@ class Bodies:
     """Ends (k, bodies, 2, 3) and radii of all capsules, and which pairs must not touch."""
 
     def __init__(self, robot: Mechanism, poses: Array) -> None:
-        pairs, _ = rooms(robot)
+        pairs = rooms(robot).pairs
         solids = {solid.number: solid for pair in pairs for solid in pair}
         place = {number: i for i, number in enumerate(solids)}
         self.pairs = [(place[pair.one.number], place[pair.two.number]) for pair in pairs]

@@ -63,7 +63,7 @@ def corners(robot: Mechanism, pairs: list[Pair], pose: Array) -> list[tuple[Arra
 
 def between(robot: Mechanism, first: str, second: str, pose: Array) -> float:
     """The clearance of two members, by name."""
-    pairs, walled = rooms(robot)
+    pairs, walled, _ = rooms(robot)
     places = [pair.place for pair in pairs] + [room.place for room in walled]
     values = components(robot, np.array([pose]))[0]
     wanted = {f"{first} and {second}", f"{second} and {first}"}
