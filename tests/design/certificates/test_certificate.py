@@ -145,6 +145,7 @@ def test_a_region_partly_out_of_reach_is_never_proved(margin: str, at_least: flo
     assert found.status == "refuted"
 
 
+@pytest.mark.long
 def test_a_bound_below_zero_is_not_proved_out_of_reach_either(monkeypatch: pytest.MonkeyPatch) -> None:
     """The moduli are trivially above it wherever they have a value."""
     monkeypatch.setattr("design.certificates.refutation.Refuter.refutation", lambda *_: None)

@@ -119,6 +119,7 @@ def test_set_points_say_which_machine_they_are_for(tmp_path: Path) -> None:
     assert header["joint ranges"] == {"joints": list(RANGES.joints), "passive": list(RANGES.passive)}
 
 
+@pytest.mark.long
 def test_a_machine_twice_as_heavy_and_as_strong_is_as_fast(tmp_path: Path) -> None:
     """Every mass and inertia, the payload and the torques doubled: the same motion; without the torques, a slower."""
     masses = "drive = 0.045\narm_mass = 0.9\nrod_mass = 0.26\nplate_masses = [0.55, 0.55]\ntool = 6e-4\n"

@@ -25,7 +25,7 @@ from studies.stages.pipeline import run
 from studies.stages.proofs import Claim, question_of
 from studies.study_file.locate import study_names
 from studies.study_file.toml_file import read_toml
-from tests.sizes import few_or_many
+from tests.sizes import few_or_many, later
 from tests.studies.command_line import SMALL, SmallRun, copy_of, linkwright
 from trajectory import write_files
 
@@ -35,10 +35,12 @@ def fake_mechanism() -> None:
     """The real mechanisms here, in place of the other files' stand-in."""
 
 
-def test_check_accepts_every_committed_optimum() -> None:
-    ended = linkwright("check", "--json")
+@pytest.mark.parametrize("names", [("heli4",), later(())])
+def test_check_accepts_every_committed_optimum(names: tuple[str, ...]) -> None:
+    """Without a name it checks all."""
+    ended = linkwright("check", *names, "--json")
     assert ended.returncode == 0, ended.stdout + ended.stderr
-    assert set(json.loads(ended.stdout)["studies"]) == set(study_names())
+    assert set(json.loads(ended.stdout)["studies"]) == set(names or study_names())
 
 
 def test_check_accepts_what_a_run_committed(small_run: SmallRun) -> None:

@@ -77,7 +77,7 @@ def test_where_nothing_else_is_found_a_motion_rests_in_the_middle(
     assert sooner.duration < found.duration < 2.0 * sooner.duration
 
 
-@pytest.mark.parametrize("count", [4, later(6)])
+@pytest.mark.parametrize("count", [later(4), later(6)])
 def test_both_laws_time_corners_of_nanometres_beside_wide_ones(robot: Heli4, count: int) -> None:
     rng = np.random.default_rng(23)
     places = rng.uniform((-0.2, -0.2, -0.85), (0.2, 0.2, -0.65), (6, 3)).tolist()
