@@ -1,40 +1,81 @@
-"""Cosine, and with it sine, and arctangent of intervals."""
+"""Cosine, sine and arctangent of intervals, without branches, so that a loop over them becomes vector code."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numba
 import numpy as np
 
+from kinematics.evaluation import vector_sine
+from kinematics.evaluation.vector_arctangent import angle
+
 _LIBRARY = 2.0**-50  # what sine, cosine and arctangent may be off by, relative to 1
+_OPTIONS: dict[str, Any] = {"nogil": True, "cache": True, "error_model": "numpy", "inline": "always"}
+_cosine_at = vector_sine.sine
+LIMIT = vector_sine.LIMIT - 2.0  # rad; a quarter of a turn less
+_QUARTER = 0.5 * np.pi
+_FAR = 1e9
 
 
-@numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
+@numba.njit(**_OPTIONS)
 def cosine(a, b):  # type: ignore[no-untyped-def]
-    """Extremes at the ends and where the box holds a multiple of pi, by a count that allows for its own rounding.
-
-    `slack` covers the library's error, the rounding of a shift by pi / 2, and of pi itself, all relative to the angle.
-    """
-    slack = _LIBRARY * (1.0 + max(abs(a), abs(b)))
-    if not b - a < 6.0 or max(abs(a), abs(b)) > 1e9:
-        return -1.0, 1.0
-    low, high = min(np.cos(a), np.cos(b)) - 2.0 * slack, max(np.cos(a), np.cos(b)) + 2.0 * slack
-    first, last = np.ceil((a - slack) / np.pi - 1e-12), np.floor((b + slack) / np.pi + 1e-12)
-    if first <= last:
-        if first < last or first % 2.0 == 0.0:
-            high = 1.0
-        if first < last or first % 2.0 != 0.0:
-            low = -1.0
-    return max(low, -1.0), min(high, 1.0)
+    """Bounds of the cosine on [a, b], which must lie within LIMIT of 0."""
+    low, high = _bounds(a, b, _cosine_at(a, 1.0), _cosine_at(b, 1.0))
+    return (1.0 if (a == 0.0) & (b == 0.0) else low), high
 
 
 @numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
-def arctangent(a, b, c, d):  # type: ignore[no-untyped-def]
-    """atan2 of y in [a, b], x in [c, d]: extremes at the corners unless the box meets the cut or the origin.
+def far_cosine(a, b):  # type: ignore[no-untyped-def]
+    """As `cosine`, for any box, by the C library."""
+    if _FAR < max(abs(a), abs(b)) < np.inf:
+        return -1.0, 1.0
+    return _bounds(a, b, np.cos(a), np.cos(b))
 
-    There it jumps, and bounds would let a slope speak for both sides.
+
+@numba.njit(**_OPTIONS)
+def _bounds(a, b, p, q):  # type: ignore[no-untyped-def]
+    """From the cosines p and q of the ends, and where the box holds a multiple of pi, counted with room for rounding.
+
+    `slack` covers the error of the cosine, the rounding of a shift by pi / 2, and of pi itself, all relative to the
+    angle.
     """
-    if c <= 0.0 and a <= 0.0 <= b:
-        return -np.inf, np.inf
-    p, q, u, v = np.arctan2(a, c), np.arctan2(a, d), np.arctan2(b, c), np.arctan2(b, d)
-    low, high = min(min(p, q), min(u, v)), max(max(p, q), max(u, v))
-    return low - _LIBRARY * 4.0, high + _LIBRARY * 4.0
+    largest = max(abs(a), abs(b))
+    slack = _LIBRARY * (1.0 + largest)
+    first, last = np.ceil((a - slack) / np.pi - 1e-12), np.floor((b + slack) / np.pi + 1e-12)
+    even = np.floor(0.5 * first) == 0.5 * first
+    several, one = first < last, first == last
+    wide = (b - a >= 6.0) | several
+    high = 1.0 if wide | (one & even) else min(max(p, q) + 2.0 * slack, 1.0)
+    low = -1.0 if wide | (one & (not even)) else max(min(p, q) - 2.0 * slack, -1.0)
+    defined = largest < np.inf
+    return (low if defined else -np.inf), (high if defined else np.inf)
+
+
+@numba.njit(**_OPTIONS)
+def sine(a, b):  # type: ignore[no-untyped-def]
+    """As a cosine that is shifted, but for the exact value at 0."""
+    p, q = a - _QUARTER, b - _QUARTER
+    low, high = _bounds(p, q, _cosine_at(p, 1.0), _cosine_at(q, 1.0))
+    zero = (a == 0.0) & (b == 0.0)
+    return (0.0 if zero else low), (0.0 if zero else high)
+
+
+@numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
+def far_sine(a, b):  # type: ignore[no-untyped-def]
+    """As `sine`, for any box."""
+    return far_cosine(a - _QUARTER, b - _QUARTER)
+
+
+@numba.njit(**_OPTIONS)
+def arctangent(a, b, c, d):  # type: ignore[no-untyped-def]
+    """atan2 of y in [a, b], x in [c, d], unless the box meets the cut or the origin.
+
+    There it jumps, and bounds would let a slope speak for both sides. Elsewhere the angle falls with x above the
+    x axis and grows with it below, and grows with y on the right of the y axis and falls with it on the left.
+    """
+    total = a + b + c + d
+    defined = (total - total == 0.0) & ((c > 0.0) | (a > 0.0) | (b < 0.0))
+    x, u = (d if a > 0.0 else c), (d if b < 0.0 else c)
+    low, high = angle(a if x > 0.0 else b, x), angle(b if u > 0.0 else a, u)
+    return (low - _LIBRARY * 4.0 if defined else -np.inf), (high + _LIBRARY * 4.0 if defined else np.inf)
