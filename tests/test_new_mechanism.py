@@ -37,6 +37,7 @@ def test_the_page_names_every_hook():
         "actuator_names",
         "actuator_units",
         "joint_cosines_and_sines",
+        "j_q_closed_form",
         "pose_rate_map",
         "closure_by_twist",
     }

@@ -163,6 +163,15 @@ class Definition(ABC):
         return None
 
     @staticmethod
+    def j_q_closed_form(
+        pose: ca.SX,  # noqa: ARG004
+        g: SimpleNamespace,  # noqa: ARG004
+        mode: Mode,  # noqa: ARG004
+    ) -> ca.SX | None:
+        """(m,) the diagonal of J_q at a pose, where it is simpler than what the closure's derivative gives there."""
+        return None
+
+    @staticmethod
     def pose_rate_map(pose: ca.SX) -> ca.SX:
         """(n, n) pose rates from the twist; the identity unless the pose holds Euler angles."""
         return ca.SX.eye(pose.shape[0])

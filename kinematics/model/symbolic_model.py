@@ -49,7 +49,8 @@ class Model:
     @cached_property
     def j_q_at_pose(self) -> ca.SX:
         """(m,) the diagonal of J_q in the working mode."""
-        return self.at_pose(self.j_q)
+        known = self._mechanism.j_q_closed_form(self.pose, self.g, self.mode)
+        return self.at_pose(self.j_q) if known is None else known
 
     @cached_property
     def j_x_at_pose(self) -> ca.SX:

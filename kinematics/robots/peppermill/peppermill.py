@@ -116,6 +116,13 @@ class Peppermill(Mechanism):
         cosines, sines = limbs.cosines_and_sines(pose, mode.branches[2:], g)
         return ca.vertcat(ca.cos(pose[:2]), cosines), ca.vertcat(ca.sin(pose[:2]), sines)
 
+    @classmethod
+    def j_q_closed_form(cls, pose: ca.SX, g: SimpleNamespace, mode: Mode) -> ca.SX:
+        """1 for d_i; for theta_i the root that the branch keeps, times r_i / l_i."""
+        roots = ca.DM(mode.branches[2:]) * cls.limb_roots(pose, g)
+        slopes: ca.SX = ca.vertcat(1, 1, roots * g.proximal_lengths / g.distal_lengths)
+        return slopes
+
     @staticmethod
     def reach(pose: ca.SX, g: SimpleNamespace) -> ca.SX:
         """Distance of P_i from the inner and the outer circle of the chain's reach; the smaller one [m]."""

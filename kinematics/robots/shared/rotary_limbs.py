@@ -204,6 +204,11 @@ class RotaryLimbs(Mechanism):
         return cls.limbs(g).cosines_and_sines(cls.platform_points(pose, g), mode)
 
     @classmethod
+    def j_q_closed_form(cls, pose: ca.SX, g: SimpleNamespace, mode: Mode) -> ca.SX:
+        """(N cos q - M sin q) / 2, which is minus half the root that the branch keeps."""
+        return -ca.DM(mode.branches) * cls.limb_roots(pose, g) / 2
+
+    @classmethod
     def usual_branches(cls, home: Array, geometry: GeometryRecord) -> tuple[int, ...]:
         """Elbows out: +1 where the drive is ahead of the platform's point along `zero`, or level with it; else -1."""
         pose, (symbols, g) = ca.SX.sym("pose", len(cls.pose_names)), cls.Geometry.symbols()

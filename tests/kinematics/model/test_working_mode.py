@@ -123,6 +123,9 @@ def test_joints_at_home_choose_the_branch_of_each_limb(kind: Any) -> None:
         assert np.abs(found - joints)[limb] > 0.05
         assert np.delete(np.abs(found - joints), limb).max(initial=0.0) < 1e-12
         assert np.abs(asked.forward(found) - usual.home).max() < 1e-8
+        poses = around(asked, 50, seed=4, share=0.02)
+        for at_pose, derived in zip(asked.jacobians(poses), asked.jacobians(poses, asked.inverse(poses)), strict=True):
+            assert np.abs(at_pose - derived).max() < 1e-12, "seed 4"
         assert kind(home=usual.home, home_joints=joints).mode.branches == (1,) * count
 
 
