@@ -17,6 +17,8 @@ from kinematics.dynamics.member_loads import MemberLoad
 
 _TRIANGLE = 9 * math.sqrt(3)  # the largest moment of a beam on two supports under a triangular load w is w l^2 over it
 LARGEST = 1e9  # factor; a member that bears less has this one
+_TINY = 1e-24  # under a root, so that it has a derivative where it is 0; what it adds is less than rounding
+_APART = 1e-20  # likewise, of the sum of two eigenvalues: the square of their difference
 
 
 class Size:
@@ -28,7 +30,7 @@ class Size:
 
     def norm(self, vectors: ca.SX) -> ca.SX:
         """Of vectors (3, c) in one plane."""
-        return ca.norm_2(vectors)
+        return _length(vectors)
 
     def modulus(self, row: ca.SX) -> ca.SX:
         """Of a row (1, c)."""
@@ -47,7 +49,7 @@ class WorstDirection(Size):
 
     def most(self, row: ca.SX) -> ca.SX:
         """Exactly: along the row."""
-        return self.acceleration * ca.norm_2(row[:-1]) + row[-1]
+        return self.acceleration * _length(row[:-1]) + row[-1]
 
     def norm(self, vectors: ca.SX) -> ca.SX:
         """At most: the largest singular value, of at most two, and the constant, as if both had one direction."""
@@ -56,8 +58,12 @@ class WorstDirection(Size):
         trace = ca.trace(gram)
         count = gram.shape[0]
         minors = sum(gram[i, i] * gram[j, j] - gram[i, j] ** 2 for i in range(count) for j in range(i))
-        largest = (trace + ca.sqrt(ca.fmax(trace**2 - 4 * minors, 0))) / 2
-        return self.acceleration * ca.sqrt(largest) + ca.norm_2(vectors[:, -1])
+        apart = ca.sqrt(ca.fmax(trace**2 - 4 * minors, _APART * trace**2) + _TINY**2)
+        return self.acceleration * ca.sqrt((trace + apart) / 2 + _TINY) + _length(vectors[:, -1])
+
+
+def _length(vector: ca.SX) -> ca.SX:
+    return ca.sqrt(ca.sumsqr(vector) + _TINY)
 
 
 class Slack(NamedTuple):
