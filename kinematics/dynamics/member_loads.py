@@ -20,7 +20,7 @@ from kinematics.coordinates import is_length
 from kinematics.dynamics.proper_acceleration import ProperAcceleration
 from kinematics.dynamics.stiffness import transmission
 from kinematics.machine import Bodies, Cut, Material, Member, Section, Tube
-from kinematics.model import Mechanism
+from kinematics.model import Mechanism, Model
 
 
 class MemberLoad(NamedTuple):
@@ -118,13 +118,18 @@ def case_in_motion(robot: Mechanism, payload: float | ca.SX, velocity: ca.SX, ac
     return _case(robot, payload, velocity, acceleration, lambda vector: vector)
 
 
-@lru_cache(maxsize=16)
 def case_at_rest(robot: Mechanism) -> LoadCase:
     """Of the robot at rest with its own `load.payload`.
 
     The columns are those for an acceleration of 1 m/s^2 of the tool point along each axis in turn, without weights;
     the last one is for the weights.
     """
+    return _case_at_rest(robot, robot.model())
+
+
+@lru_cache(maxsize=16)
+def _case_at_rest(robot: Mechanism, _: Model) -> LoadCase:
+    """The model is in the key because its symbols are in the answer."""
     n = len(robot.pose_names)
     velocity, acceleration = (ca.SX.sym(name, n) for name in ("velocity", "acceleration"))
     axes = [i for i, name in enumerate(robot.pose_names) if is_length(name)]

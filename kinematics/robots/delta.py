@@ -29,6 +29,7 @@ from kinematics.robots.shared import (
     limb_members,
     means_and_differences,
     motors,
+    pairs_held,
     radial_directions,
     studs,
 )
@@ -155,7 +156,7 @@ class Delta(PairedArms):
         ]
         shapes = platform(corners, np.column_stack([np.real(flat), np.imag(flat)]), g.plate_thickness)
         limbs = limb_members(type(self), pose, joints, g, g.parallelogram_width)
-        return [*limbs, Member("plate", ("B1", "B2", "B3"), "plate", shapes)]
+        return [*limbs, Member("plate", tuple(pairs_held(0, 1, 2)), "plate", shapes)]
 
     def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
         """The motors."""

@@ -102,18 +102,19 @@ def _rooms(robot: Mechanism, model: Model) -> Rooms:
     around = robot.surroundings
     members = robot.all_members(model.pose, model.joints, model.g)
     _require_joined(robot, members)
-    hull = [] if around.payload_hull is None else [_hull_member(robot, around.payload_hull)]
-    solids = _solids(robot, [*members, *hull])
+    if around.payload_hull is not None:
+        hull = _hull_member(robot, around.payload_hull)
+        members = [m._replace(joints=(*m.joints, *hull.joints)) if _carries(robot, m) else m for m in members] + [hull]
+    solids = _solids(robot, members)
     boxes = [
         Solid(Member(box.name, (_BASE,), "", ()), Convex.box(box.low, box.high), ca.SX(0))
         for box in around.obstacles
         if not box.inside
     ]
-    held = {_HULL, robot.tool_member}
     pairs = tuple(
         Pair(one, two)
         for one, two in combinations([*solids, *boxes], 2)
-        if not set(one.member.joints) & set(two.member.joints) and {one.member.name, two.member.name} != held
+        if not set(one.member.joints) & set(two.member.joints)
     )
     moving = [solid for solid in solids if solid.moves]
     walled = tuple(Walled(solid, name, walls) for name, walls in _walls(robot) for solid in moving)
@@ -146,7 +147,7 @@ def hull_depth(robot: Mechanism) -> float:
     hull = robot.surroundings.payload_hull
     if hull is None:
         return 0.0
-    holders = [m for m in _members(robot) if m.name == robot.tool_member]
+    holders = [member for member in _members(robot) if _carries(robot, member)]
     *held, of_hull = _solids(robot, [*holders, _hull_member(robot, hull)])
     depth = -float(np.min(_at_home(robot, [Pair(of_hull, one).distance for one in held])))
     return max(depth, 0.0) if depth > _ROUNDING * robot.geometry.size else 0.0
@@ -186,7 +187,13 @@ def _hull_member(robot: Mechanism, hull: PayloadHull) -> Member:
         around = (hull.radius - half) / np.cos(np.pi / _SIDES) * np.array([np.cos(angles), np.sin(angles)])
         level = np.full((1, _SIDES), hull.low + half)
         shape = Plate(ca.repmat(point, 1, _SIDES) + axes @ ca.DM(np.vstack([around, level])), ca.SX(2 * half))
-    return Member(_HULL, ("tool",), "", (shape,))
+    return Member(_HULL, (_HULL,), "", (shape,))
+
+
+def _carries(robot: Mechanism, member: Member) -> bool:
+    """Whether a member is the one that carries the tool, or is part of the same link."""
+    links = {other.name: other.link or other.name for other in _members(robot)}
+    return links.get(member.name) == links[robot.tool_member]
 
 
 def _members(robot: Mechanism) -> list[Member]:

@@ -27,7 +27,7 @@ class Heli4Inertia(ArmInertia):
     """
 
     _shapes = MappingProxyType({"plate_masses": (2,)})
-    plate_fittings: tuple[float, float] = (0.489, 0.489)
+    plate_fittings: tuple[float, float] = (0.489, 0.4585)
     plate_masses: tuple[float, float] | None = None
     tool: float = 6e-4
 

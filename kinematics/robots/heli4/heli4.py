@@ -33,6 +33,7 @@ from kinematics.robots.shared import (
     means_and_differences,
     motors,
     outline,
+    pairs_held,
     radial_directions,
     studs,
 )
@@ -127,15 +128,21 @@ class Heli4(PairedArms):
 
     @classmethod
     def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
-        """Arms, both rods of each limb, and two plates in the shape of an H, which the screw joins."""
+        """Arms, both rods of each limb, and two plates in the shape of an H.
+
+        The middle bar of the upper plate stands above its rods' ends, so that the plates can pass each other.
+        """
         ends = cls.platform_points(pose, g)
         held, radius = studs(ends, cls.limbs(g).axes(), g.parallelogram_width), g.plate_thickness / 2
         plates = []
         for name, first in (("lower plate", 0), ("upper plate", 2)):
-            joints_of = (f"B{first + 1}", f"B{first + 2}", "screw")
-            axles = [Tube(held[:, 2 * i], held[:, 2 * i + 1], radius, radius) for i in (first, first + 1)]
-            middle = Tube(ends[:, first], ends[:, first + 1], radius, radius)
-            plates.append(Member(name, joints_of, "plate", (middle, *axles)))
+            limbs = (first, first + 1)
+            axles = [Tube(held[:, 2 * i], held[:, 2 * i + 1], radius, radius) for i in limbs]
+            low = [ends[:, i] for i in limbs]
+            high = [end + UPPER[first] * ca.vertcat(0, 0, g.plate_rise) for end in low]
+            uprights = [Tube(a, b, radius, radius) for a, b in zip(low, high, strict=True)] if UPPER[first] else []
+            shapes = (Tube(high[0], high[1], radius, radius), *axles, *uprights)
+            plates.append(Member(name, tuple(pairs_held(*limbs)), "plate", shapes))
         return limb_members(cls, pose, joints, g, g.parallelogram_width) + plates
 
     def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002

@@ -38,6 +38,7 @@ from kinematics.robots.shared import (
     limb_members,
     means_and_differences,
     motors,
+    pairs_held,
     radial_directions,
     studs,
 )
@@ -206,7 +207,7 @@ class Par4(PairedArms):
         for name, (centre, limbs) in at.items():
             spokes = [Tube(centre, ends[:, i], thick, thick) for i in limbs]
             axles = [Tube(held[:, 2 * i], held[:, 2 * i + 1], thick, thick) for i in limbs]
-            platform.append(Member(name, (name, *(f"B{i + 1}" for i in limbs)), "plate", (*spokes, *axles)))
+            platform.append(Member(name, (name, *pairs_held(*limbs)), "plate", (*spokes, *axles)))
         return limb_members(cls, pose, joints, g, g.parallelogram_width) + platform
 
     def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002

@@ -14,6 +14,7 @@ from kinematics.machine import (
     Bodies,
     DriveTrain,
     InertiaRecord,
+    Member,
     Particle,
     Rod,
     Rotor,
@@ -55,14 +56,14 @@ def bodies(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace,
     """Slides, rods, platform and payload."""
     i, found = robot.inertia, Bodies()
     rails, platform, lengths = robot.rail_points(joints, g), robot.platform_points(pose, g), robot.arm_lengths(g)
-    *rods, moved = robot.members(pose, joints, g)
-    per_length = robot.structure.of(rods[0]).density * rods[0].tube.area
+    rod, moved = robot.members(pose, joints, g)[0], _platform(robot, pose, joints, g)
+    per_length = robot.structure.of(rod).density * rod.tube.area
     for limb in range(LIMBS):
         slide, several = f"slide {limb + 1}", 2 if limb in PARALLELOGRAMS else 1
         single, middle = rod_mass(per_length * lengths[limb], i.rod_joint, i.rod_mass, i.rod_middle)
         found.particles.append(Particle(slide, i.slide_mass, rails[:, limb]))
         found.rods.append(Rod(several * single, middle, (slide, "platform"), rails[:, limb], platform[:, limb]))
-    rest = robot.members(ca.SX(4, 1), joints, g)[-1]
+    rest = _platform(robot, ca.SX(4, 1), joints, g)
     density = robot.structure.of(moved).density
     mass, inertia = ca.SX(i.platform_fittings), ca.SX(i.fittings_inertia)
     if i.platform_mass is None and i.platform_inertia is None:
@@ -75,3 +76,9 @@ def bodies(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace,
     found.particles.append(Particle("platform", mass + payload, pose[:3]))
     found.rotors.append(Rotor(inertia, pose[3], AXES[2]))
     return found
+
+
+def _platform(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> Member:
+    """Its stud and both of its bars as one."""
+    parts = [member for member in robot.members(pose, joints, g) if member.material == "plate"]
+    return parts[0]._replace(shapes=tuple(shape for part in parts for shape in part.shapes))

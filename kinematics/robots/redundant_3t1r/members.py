@@ -19,22 +19,29 @@ _HELD_AT = ("B1", "B1", "B3", "B3", "B5", "B5")  # arms 1 and 2, 3 and 4, 5 and 
 
 
 def members(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
-    """The rods of all arms; and the platform: an upright bar from B1 to B5, a level one from its
-    middle to B3, and an upright one there, which holds the rods of arms 3 and 4.
+    """The rods of all arms; and the platform: an upright stud at B3 for the rods of arms 3 and 4, and a bar from each
+    of its ends to B1 and to B5, so that these rods pass between the bars. The three are members of their own, because
+    each holds other rods.
     """
     rails, platform = robot.rail_points(joints, g), robot.platform_points(pose, g)
     found = []
     for i in range(LIMBS):
         sides = SIDES if i in PARALLELOGRAMS else {"": 0.0}
         for name, side in sides.items():
-            aside, held = ca.vertcat(0, 0, side * g.parallelogram_width), (f"A{i + 1}", _HELD_AT[i])
+            aside, held = ca.vertcat(0, 0, side * g.parallelogram_width), (f"A{i + 1}{name}", f"{_HELD_AT[i]}{name}")
             tube = Tube(rails[:, i] + aside, platform[:, i] + aside, g.rod_radius, g.rod_wall)
             found.append(Member(f"rod {i + 1}{name}", held, "rod", (tube,), f"rod {i + 1}"))
-    middle, half = (platform[:, 0] + platform[:, 4]) / 2, g.platform_thickness / 2
-    stud = ca.vertcat(0, 0, g.parallelogram_width / 2)
-    bars = ((platform[:, 0], platform[:, 4]), (middle, platform[:, 2]), (platform[:, 2] - stud, platform[:, 2] + stud))
-    shapes = tuple(Tube(start, end, half, half) for start, end in bars)
-    return [*found, Member("platform", ("B1", "B3", "B5"), "plate", shapes)]
+    half, stud = g.platform_thickness / 2, ca.vertcat(0, 0, g.parallelogram_width / 2)
+    low, high = (platform[:, 2] + side * stud for side in (-1, 1))
+    bars = {
+        "platform": (("B3 a", "B3 b"), low, high),
+        "platform's upper bar": (("B1", "B3 b"), platform[:, 0], high),
+        "platform's lower bar": (("B5", "B3 a"), platform[:, 4], low),
+    }
+    return found + [
+        Member(name, at, "plate", (Tube(start, end, half, half),), "platform")
+        for name, (at, start, end) in bars.items()
+    ]
 
 
 def base_members(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG001
@@ -43,9 +50,9 @@ def base_members(robot: Redundant3T1R, pose: ca.SX, joints: ca.SX, g: SimpleName
     limits = robot.ranges.limits(LIMBS)
     found = []
     for i in range(LIMBS):
-        held = f"A{i + 1}"
-        found.append(bar(f"slide {i + 1}", (held,), "", points[:, i] - half, points[:, i] + half, g.slide_radius))
+        held = tuple(f"A{i + 1}{name}" for name in (SIDES if i in PARALLELOGRAMS else ("",)))
+        found.append(bar(f"slide {i + 1}", held, "", points[:, i] - half, points[:, i] + half, g.slide_radius))
         if np.isfinite(limits[i]).all():
             start, end = (ca.vertcat(limit, points[1:, i]) for limit in limits[i])
-            found.append(bar(f"rail {i + 1}", ("base", held), "", start, end, g.rail_radius))
+            found.append(bar(f"rail {i + 1}", ("base", *held), "", start, end, g.rail_radius))
     return found

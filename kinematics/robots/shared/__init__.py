@@ -1,6 +1,6 @@
 """Parts that several mechanisms use: rotary limbs, paired rods, and a check for limbs that coincide."""
 
-from kinematics.robots.shared.arm_and_rod_members import SIDES, limb_members, motors, studs
+from kinematics.robots.shared.arm_and_rod_members import SIDES, limb_members, motors, pairs_held, studs
 from kinematics.robots.shared.arm_masses import ArmInertia, arms_and_rods
 from kinematics.robots.shared.coincident_limbs import ALIKE, HalvesGeometry, twins
 from kinematics.robots.shared.internal_determinant import INTERNAL_DETERMINANT
@@ -38,6 +38,7 @@ __all__ = [
     "means_and_differences",
     "motors",
     "outline",
+    "pairs_held",
     "radial_directions",
     "rod_statics",
     "rods_of",

@@ -23,16 +23,17 @@ def limb_members(
     elbows, axes = limbs.elbows(joints), limbs.axes()
     found = []
     for i in range(joints.numel()):
-        arm_joints, held = (f"P{i + 1}", f"A{i + 1}"), (f"A{i + 1}", f"B{i + 1}")
         arm = Tube(limbs.actuators[:, i], elbows[:, i], g.arm_radius, g.arm_wall)
         shapes, rods = [arm], {"": 0 * axes[:, i]}
         if width is not None:
             rods = {name: side * width * axes[:, i] for name, side in SIDES.items()}
             first, second = (elbows[:, i] + aside for aside in rods.values())
             shapes.append(Tube(first, second, g.rod_radius, g.rod_radius))
+        arm_joints = (f"P{i + 1}", *(f"A{i + 1}{name}" for name in rods))
         found.append(Member(f"arm {i + 1}", arm_joints, "arm", tuple(shapes)))
         for name, aside in rods.items():
             tube = Tube(elbows[:, i] + aside, ends[:, i] + aside, g.rod_radius, g.rod_wall)
+            held = (f"A{i + 1}{name}", f"B{i + 1}{name}")
             found.append(Member(f"rod {i + 1}{name}", held, "rod", (tube,), f"rod {i + 1}"))
     return found
 
@@ -45,6 +46,11 @@ def motors(limbs: Limbs, g: SimpleNamespace) -> list[Member]:
         bar(f"motor {i + 1}", ("base", f"P{i + 1}"), "", starts[:, i], ends[:, i], g.motor_radius)
         for i in range(points.shape[1])
     ]
+
+
+def pairs_held(*limbs: int) -> list[str]:
+    """What the joints of both rods of some limbs, counted from 0, are called on the platform."""
+    return [f"B{i + 1}{name}" for i in limbs for name in SIDES]
 
 
 def studs(points: ca.SX, axes: ca.SX, width: ca.SX) -> ca.SX:

@@ -32,9 +32,9 @@ class Bodies:
 
     def __init__(self, robot: Mechanism, poses: Array) -> None:
         pairs = rooms(robot).pairs
-        solids = {solid.number: solid for pair in pairs for solid in pair}
+        solids = {id(solid): solid for pair in pairs for solid in pair}
         place = {number: i for i, number in enumerate(solids)}
-        self.pairs = [(place[pair.one.number], place[pair.two.number]) for pair in pairs]
+        self.pairs = [(place[id(pair.one)], place[id(pair.two)]) for pair in pairs]
         model = robot.model()
         parts = ca.vertcat(*(ca.vertcat(ca.vec(s.core.corners), s.radius) for s in solids.values()))
         numbers = ca.substitute(parts, model.geometry, ca.SX(robot.geometry.vector()))

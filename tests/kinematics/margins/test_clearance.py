@@ -86,8 +86,7 @@ def test_every_component_is_the_distance_that_a_collision_library_finds(name: st
 
 def test_rods_grown_until_they_touch_have_no_clearance_and_then_minus_their_depth() -> None:
     robot = Redundant3T1R()
-    assert robot.margin_place("clearance", robot.home) == "rod 1 and rod 4 b"
-    room = float(robot.margin("clearance", robot.home))
+    room = between(robot, "rod 1", "rod 4 b", robot.home)
     for grown, left in ((room / 2, 0.0), (room, -room)):
         thick = replace(robot.geometry, rod_radius=robot.geometry.rod_radius + grown)
         other = robot.with_geometry(thick)
@@ -117,9 +116,9 @@ def test_the_redundant_papers_guide_condition_follows_from_the_rails() -> None:
     thick = g.platform_thickness / 2 + g.rail_radius
     level = g.outer_rail_z - g.platform_height / 2  # of the tool, with B_1 as high as rails 1 and 2
     for y in (-0.3, -0.2, 0.1):
-        room = between(robot, "platform", "rail 1", np.array([0.0, y, level, np.pi / 2]))
+        room = between(robot, "platform's upper bar", "rail 1", np.array([0.0, y, level, np.pi / 2]))
         assert room == pytest.approx(y - (g.outer_rail_y + g.platform_length / 2) - thick, abs=1e-12)
-        room = between(robot, "platform", "rail 2", np.array([0.0, y, level, -np.pi / 2]))
+        room = between(robot, "platform's upper bar", "rail 2", np.array([0.0, y, level, -np.pi / 2]))
         assert room == pytest.approx(-g.outer_rail_y - g.platform_length / 2 - y - thick, abs=1e-12)
 
 
