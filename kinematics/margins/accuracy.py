@@ -21,6 +21,7 @@ from kinematics.arrays import Array
 from kinematics.mathematics import adjugate
 from kinematics.model import ClaimSymbols, Margin, Measure, Mechanism, ToShow
 
+_TINY = 1e-60  # under a root, so that it has a derivative where a corner moves nothing
 _REGULAR = 1e-6  # what det (A S), about 1 in the middle of a box, must exceed
 
 
@@ -82,7 +83,7 @@ class _Accuracy(Margin):
         """One for each pair of opposite corners; one for a single coordinate."""
         columns, det = ErrorModel.of(robot).columns()
         squares, moduli = self._sizes(robot, columns)
-        return ca.vertcat(ca.sqrt(squares), moduli) / ca.fabs(det)
+        return ca.vertcat(ca.sqrt(squares + _TINY), moduli) / ca.fabs(det)
 
     def worst(self, robot: Mechanism, measure: Measure) -> ca.SX:  # noqa: ARG002
         """With one root and one division."""

@@ -198,6 +198,33 @@ def delta(*variables: tuple[str, float, float], **others: object) -> Problem:
     return replace(problem(*variables, **others), robot=robot, **measured)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(
+    ("margin", "word", "bound"),
+    [
+        ("strength", "at_least", 5.5),
+        later("stiffness", "at_least", 1.0e5),
+        later("natural_frequency", "at_least", 35.0),
+        later("internal_stiffness", "at_least", 4000.0),
+        later("position_accuracy", "at_most", 9e-5),
+        later("mass", "at_most", 3.7),
+    ],
+)
+def test_each_margin_of_the_bodies_can_be_asked_for(margin: str, word: str, bound: float) -> None:
+    """None of them holds for the prototype."""
+    asked = delta(
+        ("arm_length", 0.25, 0.40),
+        ("rod_length", 0.70, 0.90),
+        ("arm_radius", 0.010, 0.040),
+        ("rod_radius", 0.004, 0.012),
+        requirements=(Requirement(margin, **{word: bound}),),
+    )
+    found = synthesise(asked, DELTA_BOX, starts=1, about=20_000)
+    before, after = (worst_poses(robot, DELTA_BOX, margin, about=ABOUT).value for robot in (asked.robot, found.robot))
+    sense = asked.robot.margins[margin].sense
+    assert sense * before < sense * bound
+    assert sense * after >= sense * bound - 2e-4 * abs(bound)
+
+
 @pytest.mark.parametrize("seed", [0, later(1)])
 def test_bounds_from_a_millimetre_to_ten_metres_with_sums_and_floors_give_the_narrow_bounds_answer(seed: int) -> None:
     wide = delta(

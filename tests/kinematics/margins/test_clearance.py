@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import combinations
 
 import casadi as ca
 import numpy as np
@@ -15,7 +16,9 @@ from kinematics import (
     GoughStewart,
     Heli4,
     InvalidValue,
+    Mechanism,
     Obstacle,
+    Par4,
     PayloadHull,
     Peppermill,
     Planar3PRR,
@@ -91,6 +94,55 @@ def test_rods_grown_until_they_touch_have_no_clearance_and_then_minus_their_dept
         thick = replace(robot.geometry, rod_radius=robot.geometry.rod_radius + grown)
         other = robot.with_geometry(thick)
         assert between(other, "rod 1", "rod 4 b", robot.home) == pytest.approx(left, abs=1e-14)
+
+
+def compared(robot: Mechanism) -> set[frozenset[str]]:
+    places = robot.margins["clearance"].places(robot)
+    assert places is not None
+    return {frozenset(place.split(" and ")) for place in places}
+
+
+def test_heli4s_members_are_compared_unless_they_turn_on_one_another() -> None:
+    """The list of joints is written here once more, by hand."""
+    plates = {"lower plate": "12", "upper plate": "34"}
+    rods = [f"rod {i} {side}" for i in "1234" for side in "ab"]
+    moving = [*plates, *rods, *(f"arm {i}" for i in "1234")]
+    every = {frozenset(pair) for pair in combinations(moving, 2)}
+    every |= {frozenset((f"motor {i}", member)) for i in "1234" for member in moving}
+    joined = {frozenset((f"arm {i}", other)) for i in "1234" for other in (f"motor {i}", f"rod {i} a", f"rod {i} b")}
+    joined |= {frozenset((plate, f"rod {i} {s}")) for plate, limbs in plates.items() for i in limbs for s in "ab"}
+    assert compared(Heli4()) == every - joined
+
+
+def test_the_rods_of_arms_3_and_4_are_compared_with_what_does_not_hold_them() -> None:
+    pairs = compared(Redundant3T1R())
+    for rod, own, other in (("a", "lower", "upper"), ("b", "upper", "lower")):
+        for i in (3, 4):
+            assert {f"rod {i} {rod}", f"platform's {other} bar"} in pairs
+            assert {f"rod {i} {rod}", f"platform's {own} bar"} not in pairs
+    assert {"rod 3 a", "rod 3 b"} in pairs
+    assert {"rod 3 a", "rod 4 b"} in pairs
+
+
+@pytest.mark.parametrize("kind", [Delta, Heli4, Par4, Redundant3T1R])
+def test_two_rods_of_a_limb_that_are_nearer_than_they_are_thick_intersect(kind: type[Mechanism]) -> None:
+    usual = kind().geometry
+    radius = usual.rod_radius  # type: ignore[attr-defined]
+    robot = kind(replace(usual, parallelogram_width=1.5 * radius))  # type: ignore[call-arg]
+    assert robot.margin("clearance", robot.home) <= -0.5 * radius + 1e-12
+
+
+def test_heli4s_plates_pass_each_other_in_a_whole_turn() -> None:
+    robot = Heli4()
+    poses = np.tile(robot.home, (200, 1))
+    poses[:, 3] = np.linspace(-np.pi, np.pi, 200)
+    assert (between_all(robot, "lower plate", "upper plate", poses) > 0.0).all()
+    low = Heli4(replace(robot.geometry, plate_rise=0.01))
+    assert (between_all(low, "lower plate", "upper plate", poses) < 0.0).any()
+
+
+def between_all(robot: Mechanism, one: str, two: str, poses: np.ndarray) -> np.ndarray:
+    return np.array([between(robot, one, two, pose) for pose in poses])
 
 
 def test_turning_the_whole_robot_changes_no_clearance() -> None:
