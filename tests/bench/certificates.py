@@ -37,7 +37,7 @@ CASES: list[tuple[Mechanism, Region, str, float]] = [
     (Peppermill(), MILL, "J_q", 1e-6),
     (Heli4(), CYLINDER, "joint_travel", 0.16),
     (Heli4(), CYLINDER, "passive_joint", 0.32),
-    (Redundant3T1R(), NARROW, "clearance", 0.0076),
+    (Redundant3T1R(), NARROW, "clearance", 0.0268),
     (Heli4(), CYLINDER, "clearance", 0.00295),
     (GoughStewart(), HEXAPOD, "joint_travel", 0.04),
     (GoughStewart(), HEXAPOD, "passive_joint", 0.19),
