@@ -12,6 +12,7 @@ from kinematics.dynamics.drive_torque import (
     torques,
 )
 from kinematics.dynamics.forces_of_members import MemberForces, member_forces
+from kinematics.dynamics.loads_from_rest import LoadsFromRest, loads_from_rest
 from kinematics.dynamics.member_loads import LoadCase, MemberLoad, case_at_rest, case_in_motion
 from kinematics.dynamics.reaction_on_frame import FrameReaction, frame_reaction
 from kinematics.dynamics.stiffness import (
@@ -31,6 +32,7 @@ __all__ = [
     "FrameReaction",
     "JointMotion",
     "LoadCase",
+    "LoadsFromRest",
     "MemberForces",
     "MemberLoad",
     "Size",
@@ -47,6 +49,7 @@ __all__ = [
     "from_actuators",
     "inverse_dynamics",
     "joint_motion",
+    "loads_from_rest",
     "mass_matrix",
     "mass_matrix_symbolic",
     "member_forces",

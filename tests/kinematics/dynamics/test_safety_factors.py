@@ -8,7 +8,17 @@ import numpy as np
 import pytest
 
 from design import Box, certify
-from kinematics import MECHANISMS, Delta, GoughStewart, Heli4, InvalidValue, Peppermill, is_length, member_forces
+from kinematics import (
+    MECHANISMS,
+    Delta,
+    GoughStewart,
+    Heli4,
+    InvalidValue,
+    Peppermill,
+    is_length,
+    loads_from_rest,
+    member_forces,
+)
 from kinematics.dynamics import MemberLoad, Size, WorstDirection, safety_factors
 from kinematics.machine import MATERIALS, Load, Tube
 from tests.sizes import every_mechanism
@@ -97,6 +107,30 @@ def test_strength_is_the_worst_direction_of_the_acceleration_or_a_little_less(na
     found = float(robot.margin("strength", pose))
     assert found <= sampled * (1 + 1e-9)
     assert sampled <= 1.5 * found
+
+
+@EVERY
+def test_loads_from_rest_are_those_in_the_worst_direction_or_a_little_more(name):
+    """Tension and compression exactly; the others as if acceleration and weight were worst together."""
+    robot, rng = MECHANISMS[name](), np.random.default_rng(8)
+    lengths = [i for i, axis in enumerate(robot.pose_names) if is_length(axis)]
+    pose = robot.home + 0.02 * robot.pose_units() * rng.uniform(-1, 1, robot.home.size)
+    directions = rng.normal(size=(20_000, len(lengths)))
+    acceleration = np.zeros((20_000, robot.home.size))
+    acceleration[:, lengths] = robot.load.acceleration * directions / np.linalg.norm(directions, axis=1)[:, None]
+    sampled = member_forces(robot, robot.load.payload, pose, np.zeros_like(pose), acceleration)
+    found = loads_from_rest(robot, pose)
+    assert found.names == sampled.names
+    largest = np.maximum(found.tension, found.compression)
+    np.testing.assert_allclose(np.abs(sampled.tension).max(axis=0), largest, rtol=2e-3)
+    for most, seen in ((found.bending, sampled.bending), (found.joint_force, sampled.joint_force)):
+        assert (seen.max(axis=0) <= most * (1 + 1e-9) + 1e-12).all()
+        assert (most <= 1.6 * seen.max(axis=0) + 1e-9).all()
+
+
+def test_loads_from_rest_are_lost_where_a_limb_cannot_reach():
+    found = loads_from_rest(Delta(), np.array([[0.0, 0.0, -0.75], [9.0, 0.0, 0.0]]))
+    assert np.isnan(found.joint_force).any(axis=1).tolist() == [False, True]
 
 
 def test_the_buckling_of_rods_is_exact_in_the_worst_direction():
