@@ -86,7 +86,7 @@ from kinematics.model import (
     continued,
     sides,
 )
-from kinematics.multibody import PlacedShape, mjcf, placed_shapes, swept_box
+from kinematics.multibody import PlacedShape, mjcf, placed_payload, placed_shapes, swept_box
 from kinematics.printed_bounds import rounded_down, rounded_up
 from kinematics.robots import MECHANISMS, Delta, Hexa
 from kinematics.robots.gough_stewart import GoughStewart, LostPaths, SelfMotion, SingularArchitecture
@@ -185,6 +185,7 @@ __all__ = [
     "mjcf",
     "mobility_of_identical_chains",
     "over_spans",
+    "placed_payload",
     "placed_shapes",
     "plain",
     "platform_stiffness",

@@ -2,12 +2,14 @@
 
 from kinematics.multibody.mjcf import mjcf
 from kinematics.multibody.open_tree import tree_motion
+from kinematics.multibody.payload import placed_payload
 from kinematics.multibody.placed_shapes import PlacedShape, placed_shapes
 from kinematics.multibody.swept_box import swept_box
 
 __all__ = [
     "PlacedShape",
     "mjcf",
+    "placed_payload",
     "placed_shapes",
     "swept_box",
     "tree_motion",
