@@ -9,6 +9,7 @@ import pytest
 from kinematics import Obstacle, PayloadHull, Surroundings
 from studies.building import load_study, robot_of
 from studies.errors import StudyError
+from studies.report.machine_rows import machine_rows
 from studies.study_file import design_question, read_toml
 
 STUDY = """title = "A Delta over a conveyor"
@@ -51,6 +52,21 @@ def test_a_study_s_surroundings_are_those_of_its_robot_and_of_its_question(tmp_p
     assert robot_of(study).surroundings == Surroundings(-0.95, (conveyor,), PayloadHull(0.03, -0.06, -0.006))
     assert robot_of(study).conditions(("surroundings",))["surroundings"]["floor"] == -0.95
     assert "surroundings.floor" in design_question(study)
+
+
+def test_the_report_states_materials_load_and_surroundings(tmp_path: Path) -> None:
+    own = '[structure]\nrod = "light"\n[material.light]\ndensity = 1.5e3\nmodulus = 135e9\nshear_modulus = 9e9\n'
+    load = "strength = 500e6\n[load]\npayload = 2\n"
+    study = loaded(tmp_path, ("[surroundings]", f"{own}{load}[surroundings]"))
+    rows = dict(machine_rows(robot_of(study), study))
+    expected = "light: density 1500 kg/m³, modulus 135 GPa, shear modulus 9 GPa, strength 500 MPa"
+    assert rows["material of each rod"] == expected
+    assert rows["material of each arm"].startswith("aluminium: density 2700")
+    assert "material of each leg" not in rows
+    assert rows["load of strength and natural_frequency"].startswith("payload 2 kg, acceleration 100 m/s²")
+    assert rows["floor"] == "at z = -0.95 m"
+    assert rows["box 'conveyor'"] == "(-1, -0.3, -1.2) to (1, 0.3, -0.9) m; the robot stays outside"
+    assert rows["room of the payload"].startswith("radius 0.03 m, from -0.06 m to -0.006 m")
 
 
 @pytest.mark.parametrize(
