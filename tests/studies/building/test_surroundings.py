@@ -78,6 +78,9 @@ def test_the_report_states_materials_load_and_surroundings(tmp_path: Path) -> No
         ),
         (("floor_mm = -950", "floor_mm = -10"), r"floor_mm: found -10; expected a height below the base: motor 1"),
         (("0.3, -0.9]", "0.3, -1.2]"), r"obstacle\.high: found \[1, 0\.3, -1\.2\]; expected .* each above that of low"),
+        (('"conveyor"', '"rod 1 a"'), r'obstacle\.name: found "rod 1 a"; expected a name that is no member of Delta'),
+        (('"conveyor"', '"motor 2"'), r'obstacle\.name: found "motor 2"; expected a name that is no member'),
+        (('"conveyor"', '"the floor"'), r'obstacle\.name: found "the floor"; expected .* none of base, floor, payload'),
         (('"conveyor"', '""'), r'obstacle\.name: found ""'),
         (("radius = 0.03", "radius = 0"), r"payload_hull\.radius: found 0; expected a length > 0"),
     ],
@@ -85,3 +88,11 @@ def test_the_report_states_materials_load_and_surroundings(tmp_path: Path) -> No
 def test_a_fault_is_told_at_its_key(tmp_path: Path, change: tuple[str, str], words: str) -> None:
     with pytest.raises(StudyError, match=words):
         loaded(tmp_path, change)
+
+
+def test_a_name_that_two_obstacles_have_is_told_with_both_lines(tmp_path: Path) -> None:
+    row = '[[surroundings.obstacle]]\nname = "conveyor"\nlow = [0, 0, -2]\nhigh = [1, 1, -1]\n'
+    words = r'study\.toml:15: surroundings\.obstacle\.name: found "conveyor", as on line 11; expected .* different'
+    with pytest.raises(StudyError, match=words) as raised:
+        loaded(tmp_path, ("[surroundings.payload_hull]", f"{row}[surroundings.payload_hull]"))
+    assert len(raised.value.faults) == 1
