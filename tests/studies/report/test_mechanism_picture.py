@@ -19,13 +19,23 @@ from kinematics import (
     Mechanism,
     Obstacle,
     PayloadHull,
+    Redundant3T1R,
     Surroundings,
     placed_payload,
 )
-from studies.report import plots
+from studies.building import load_study
+from studies.report import map_plot, plots
+from studies.stages.map_options import map_request
+from studies.stages.map_stage import run_map
+from studies.study_file import read_toml, study_path
 
 SMALL_DELTA = Delta(Delta.Geometry(base_radius=0.13201, platform_radius=0.0332, arm_length=0.112, rod_length=0.232))
 BELOW = Box(x=(-0.04, 0.04), y=(-0.04, 0.04), z=(-0.25, -0.2))
+
+
+@pytest.fixture(autouse=True)
+def fake_mechanism() -> None:
+    """The real mechanisms here, in place of the other files' stand-in."""
 
 
 def drawn(robots: dict[str, Mechanism], region: Region) -> Figure:
@@ -100,3 +110,19 @@ def test_the_payload_is_drawn_where_the_tool_holds_it() -> None:
     payload = placed_payload(robot, pose)
     ends = np.array(pose[:3]) + np.outer([0.1, 0.3], Rotation.from_euler("xyz", pose[3:]).as_matrix()[:, 2])
     np.testing.assert_allclose(payload.corners, ends, atol=1e-14)
+
+
+def test_a_map_of_a_constant_margin_has_a_readable_colour_bar_and_its_title_fits() -> None:
+    study = load_study(read_toml(study_path("redundant_3t1r")))
+    request = map_request(study, Redundant3T1R(), margin="mass", at=("theta_deg=0",), over=("y=0:0.01", "z=0:0.3"))
+    with patch.object(map_plot, "png", lambda figure: figure):
+        figure = map_plot.map_picture(run_map(request, 1e-3, False, lambda _: None))
+    figure.canvas.draw()
+    bar = figure.axes[1]
+    assert bar.yaxis.get_offset_text().get_text() == ""
+    shown = [text.get_text() for text in bar.get_yticklabels()]
+    assert len(set(shown)) == len(shown) > 3
+    title = figure._suptitle.get_window_extent()
+    assert title.x0 >= 0.0
+    assert title.x1 <= figure.bbox.x1
+    assert "deviation 0" in figure._suptitle.get_text().replace("\n", " ")
