@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from kinematics import RESERVED_NAMES, InvalidField, Obstacle, PayloadHull, Surroundings, require_room, taken_names
+from kinematics import (
+    RESERVED_NAMES,
+    InvalidField,
+    InvalidValue,
+    Obstacle,
+    PayloadHull,
+    Surroundings,
+    require_room,
+    taken_names,
+)
 from studies.building.hardware import subtable
 from studies.errors import KeyPath, StudyError, spelled
 from studies.study_file import Conversion, Finding
@@ -62,6 +71,8 @@ def require_room_in(robot: Mechanism, file: TomlFile) -> None:
         table: KeyPath = ("payload_hull",) if error.record == "PayloadHull" else ()
         key = _spelled(file, ("surroundings", *table, error.field))
         raise StudyError([file.fault(key, spelled(file.value(key)), error.expected)]) from error
+    except InvalidValue as error:  # of a mechanism whose tool's member does not exist
+        raise StudyError([file.fault(("mechanism",), f"{error.what} {error.found}", error.expected)]) from error
 
 
 def _spelled(file: TomlFile, path: KeyPath) -> KeyPath:
