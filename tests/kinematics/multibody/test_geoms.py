@@ -1,5 +1,6 @@
 """The members in MuJoCo: every shape is drawn, and MuJoCo's distances between them are ours."""
 
+import re
 from dataclasses import replace
 from itertools import combinations, product
 
@@ -11,6 +12,7 @@ import pytest
 from kinematics import Delta, GoughStewart, Obstacle, PayloadHull, Surroundings
 from kinematics.margins.clearance.solids import rooms
 from kinematics.robots.registry import MECHANISMS
+from tests.house import ROOT
 from tests.kinematics.multibody.mujoco_model import loaded
 
 EACH = pytest.mark.parametrize("kind", list(MECHANISMS.values()), ids=list(MECHANISMS))
@@ -81,3 +83,15 @@ def _parts(robot, pose, name):
 
 def _belongs(name, member):
     return name == member.name or name.startswith(f"{member.name}, ")
+
+
+def test_the_example_of_the_page_on_bodies_runs_and_its_export_loads():
+    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "bodies.md").read_text(), re.DOTALL)
+    names = {}
+    exec(code, names)
+    robot, pose = names["robot"], np.array([0.1, 0.0, -0.7])
+    assert robot.margin_place("clearance", pose) in code
+    model, _ = loaded(robot, pose, 0.5)
+    assert {"the floor", "conveyor", "payload"} <= {model.geom(k).name for k in range(model.ngeom)}
+    plain, _ = loaded(Delta(), pose, 0.5)
+    np.testing.assert_array_equal(model.body_mass, plain.body_mass)
