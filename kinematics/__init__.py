@@ -76,6 +76,7 @@ from kinematics.margins import (
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
 from kinematics.model import (
+    RESERVED_NAMES,
     Bound,
     ClaimSymbols,
     FviBounds,
@@ -87,8 +88,9 @@ from kinematics.model import (
     by_name,
     continued,
     sides,
+    taken_names,
 )
-from kinematics.multibody import PlacedShape, mjcf, placed_shapes, swept_box
+from kinematics.multibody import PlacedShape, mjcf, placed_payload, placed_shapes, require_room, swept_box
 from kinematics.printed_bounds import rounded_down, rounded_up
 from kinematics.robots import MECHANISMS, Delta, Hexa
 from kinematics.robots.gough_stewart import GoughStewart, LostPaths, SelfMotion, SingularArchitecture
@@ -108,6 +110,7 @@ __all__ = [
     "MATERIALS",
     "MECHANISMS",
     "PASSIVE_JOINT",
+    "RESERVED_NAMES",
     "ROTATIONAL_STIFFNESS",
     "STANDARD",
     "UNIFORM",
@@ -189,15 +192,18 @@ __all__ = [
     "mjcf",
     "mobility_of_identical_chains",
     "over_spans",
+    "placed_payload",
     "placed_shapes",
     "plain",
     "platform_stiffness",
     "positive",
+    "require_room",
     "rounded_down",
     "rounded_up",
     "run_through",
     "sides",
     "swept_box",
+    "taken_names",
     "to_actuators",
     "tool_stiffness",
     "torques",

@@ -26,6 +26,8 @@ from kinematics import Array, finite, positive
 COARSEST = 33  # nodes along an axis
 FINEST = 513
 TOLERANCE = 1e-3
+_SAME = 1e-9  # of its size: how much an index may differ that does not change over the plane
+_ROUNDING = 1e-13  # of the mean: smaller deviations are the rounding of the sums
 _GOOD, _INSET = 2, 3  # columns of a vertex, after its two coordinates
 
 
@@ -129,7 +131,9 @@ def level_set(
     tolerance, budget = positive("tolerance", tolerance), Budget(seconds)
     section.check(names)
     found = _refined(index, section, names, bound, tolerance, budget, window_of(section))
-    while bound is not None and not budget.spent and found.figures.area <= tolerance * found.whole:
+    while (
+        bound is not None and not budget.spent and not _is_flat(found) and found.figures.area <= tolerance * found.whole
+    ):
         window = window_of_part(index, section, names, found.map, bound, budget)
         if window is None:
             break
@@ -160,11 +164,18 @@ def _refined(
         now = integrals(chart, bound)
         before, moved = (found.figures, now.moved(found.figures, whole)) if found else (none, math.inf)
         found = LevelSet(chart, bound, now, before, moved, tolerance)
-        if found.settled and now.area > tolerance * whole:
+        if found.settled and (now.area > tolerance * whole or _is_flat(found)):
             break
         count = 2 * count - 1
     assert found is not None
     return found
+
+
+def _is_flat(found: LevelSet) -> bool:
+    """Whether the index is one number at all nodes of two maps, and misses the bound: finer ones would show no more."""
+    values = found.map.values[np.isfinite(found.map.values)]
+    flat = values.size and np.ptp(values) <= _SAME * np.abs(values).max()
+    return bool(flat and found.settled and found.figures.area == 0.0)
 
 
 def integrals(chart: Map, bound: float | None) -> Integrals:
@@ -183,6 +194,7 @@ def integrals(chart: Map, bound: float | None) -> Integrals:
     values = values - mean
     squares = ((values**2).sum(axis=1) + values.sum(axis=1) ** 2) / 12.0  # of a linear function over a triangle
     deviation = math.sqrt(float((areas * squares).sum() / total))
+    deviation = deviation if deviation > _ROUNDING * abs(mean) else 0.0
     return Integrals(total, chart.sense * mean, deviation)
 
 

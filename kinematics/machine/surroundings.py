@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import casadi as ca
+import numpy as np
+
 from kinematics.errors import InvalidField
 from kinematics.machine.geometry_record import numbers_of
+from kinematics.machine.members import Plate, Tube
 
 Place = tuple[float, float, float]
+_SIDES = 8  # of the polygon around a flat payload
 
 
 @dataclass(frozen=True)
@@ -70,6 +75,17 @@ class PayloadHull:
             raise InvalidField("PayloadHull", "radius", self.radius, "a number > 0")
         if self.high <= self.low:
             raise InvalidField("PayloadHull", "high", self.high, f"above low, {self.low:g} m")
+
+    def shape(self, point: ca.SX, axes: ca.SX) -> Tube | Plate:
+        """The hull on a tool whose point (3,) and axes (3, 3) are given."""
+        half = (self.high - self.low) / 2
+        if half >= self.radius:
+            low, high = (point + axes[:, 2] * z for z in (self.low + self.radius, self.high - self.radius))
+            return Tube(low, high, ca.SX(self.radius), ca.SX(self.radius))
+        angles = (np.arange(_SIDES) + 0.5) * 2 * np.pi / _SIDES
+        around = (self.radius - half) / np.cos(np.pi / _SIDES) * np.array([np.cos(angles), np.sin(angles)])
+        level = np.full((1, _SIDES), self.low + half)
+        return Plate(ca.repmat(point, 1, _SIDES) + axes @ ca.DM(np.vstack([around, level])), ca.SX(2 * half))
 
 
 @dataclass(frozen=True)

@@ -15,11 +15,13 @@ from kinematics.model.indices import (
 )
 from kinematics.model.joint_redundancy import BestFit, EncoderCheck, check_encoders, least_squares
 from kinematics.model.mechanism import Mechanism
+from kinematics.model.obstacle_names import RESERVED_NAMES, taken_names
 from kinematics.model.programs import Build, Write
 from kinematics.model.symbolic_model import Model
 from kinematics.model.working_mode import Mode
 
 __all__ = [
+    "RESERVED_NAMES",
     "BestFit",
     "Bound",
     "Build",
@@ -48,4 +50,5 @@ __all__ = [
     "reached",
     "sides",
     "signed",
+    "taken_names",
 ]

@@ -20,6 +20,7 @@ from kinematics.model.abstract_margin import Margin, Measure
 from kinematics.model.continuation import forward_near
 from kinematics.model.definition import Definition
 from kinematics.model.indices import FviBounds, homogeneous
+from kinematics.model.obstacle_names import require_free_names
 from kinematics.model.programs import Write, program_of
 from kinematics.model.symbolic_model import Model, model_of
 from kinematics.model.working_mode import Mode, mode_at
@@ -85,6 +86,7 @@ class Mechanism(Definition):
         self.surroundings = surroundings if surroundings is not None else Surroundings()
         if not isinstance(self.surroundings, Surroundings):
             raise InvalidValue(f"{type(self).__name__} surroundings", surroundings, "a Surroundings")
+        require_free_names(type(self), self.surroundings)
         joints = _vector(home_joints, "home_joints", self.joint_names)
         self._given = _vector(home, "home", self.pose_names), joints
         self.home = np.array(self._given[0] or self.default_home(self.geometry), dtype=float) + 0.0  # no -0
@@ -132,7 +134,13 @@ class Mechanism(Definition):
         return self._with(load=load)
 
     def with_surroundings(self, surroundings: Surroundings) -> Self:
-        """The same robot in another place, or with another payload's hull."""
+        """The same robot in another place, or with another payload's hull.
+
+        Whether it fits there is not checked here: see `kinematics.require_room`.
+
+        Raises:
+            InvalidValue: an obstacle has the name of a member.
+        """
         return self._with(surroundings=surroundings)
 
     def _with(self, **changed: Any) -> Self:

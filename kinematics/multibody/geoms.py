@@ -11,7 +11,7 @@ from kinematics.arrays import Array
 from kinematics.machine import Member, Reference, Tube
 from kinematics.multibody.placed_shapes import PlacedShape
 
-_WEIGHTLESS = {"mass": "0", "contype": "0", "conaffinity": "0"}
+WEIGHTLESS = {"mass": "0", "contype": "0", "conaffinity": "0"}
 
 
 def add_geoms(members: list[Member], bodies: dict[str, Xml.Element], asset: Xml.Element, reference: Reference) -> None:
@@ -28,7 +28,7 @@ def add_geoms(members: list[Member], bodies: dict[str, Xml.Element], asset: Xml.
         body = bodies[""] if "base" in member.joints else bodies.get(member.link or member.name)
         for k, shape in enumerate(member.shapes if body is not None else ()):
             name = member.name if len(member.shapes) == 1 else f"{member.name}, {k + 1}"
-            geom = Xml.SubElement(body, "geom", _WEIGHTLESS, name=name)  # type: ignore[arg-type]
+            geom = Xml.SubElement(body, "geom", WEIGHTLESS, name=name)  # type: ignore[arg-type]
             corners, around = np.array(reference(shape.corners)).T, float(reference(shape.around))
             if isinstance(shape, Tube):
                 geom.attrib.update(type="capsule", fromto=every_digit(corners), size=every_digit(around))

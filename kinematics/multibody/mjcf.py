@@ -3,7 +3,8 @@
 At the pose of the export every frame coincides with the base's, so that all points and axes are in base coordinates
 there, and every joint's `ref` is its coordinate: the document loads with its loops closed at that pose, and its joints
 are the mechanism's own (q1 ..., x, y ...). Rods whose mass is split between their ends are tendons of constant length;
-with mass at their middle they are bodies. A link that only carries a rotor gets 1e-12 kg. The members are drawn.
+with mass at their middle they are bodies. A link that only carries a rotor gets 1e-12 kg. The members are drawn,
+and so is what is around them.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from kinematics.dynamics import GRAVITY
 from kinematics.machine import Link
 from kinematics.model import Mechanism
 from kinematics.multibody.geoms import add_geoms, every_digit
+from kinematics.multibody.geoms_around import add_floor_and_boxes, add_payload
 from kinematics.multibody.open_tree import OpenTree, open_tree
 
 _STEP = 1e-4  # [s]
@@ -49,7 +51,10 @@ def mjcf(robot: Mechanism, pose: Array, payload: float = 0.0) -> str:
     _drive(robot, cut, elements, tendons, Xml.SubElement(root, "actuator"))
     model, asset = robot.model(), Xml.SubElement(root, "asset")
     members = robot.all_members(model.pose, model.joints, model.g)
-    add_geoms(members, elements | {"": world}, asset, cut.reference)
+    bodies = elements | {"": world}
+    add_geoms(members, bodies, asset, cut.reference)
+    add_floor_and_boxes(robot, world)
+    add_payload(robot, members, bodies, asset, cut.reference)
     for element in (tendons, equality, asset):
         if not len(element):
             root.remove(element)

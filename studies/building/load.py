@@ -7,11 +7,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from kinematics import InvalidGeometry
+from kinematics import InvalidGeometry, Mechanism
 from studies.building.against_mechanism import at_odds, study_table, wrong_words
 from studies.building.mechanisms import MechanismRefused, NamedMechanism, mechanism_named
 from studies.building.objects import path_of, robot_of
-from studies.building.surroundings import require_room
+from studies.building.surroundings import names_told, require_room_in
 from studies.errors import Fault, KeyPath, StudyError, spelled
 from studies.study_file import (
     Conversion,
@@ -52,6 +52,7 @@ def load_study(file: TomlFile, allow_code: bool = False) -> Study:
             key = conversion.spelling[path]
             conversion.findings.append(Finding(key, f"{key[-1]} = {spelled(file.value(key))}", expected))
             wrong.discard((*path[:-1], expected.partition(",")[0]))
+        names_told(file, conversion, data, mechanism)
     else:
         table = table_of(Study)
         data = conversion.to_si(_without_the_mechanism_s(raw), table)
@@ -68,12 +69,21 @@ def load_study(file: TomlFile, allow_code: bool = False) -> Study:
     try:
         named.mechanism_class.Geometry(**study.geometry)
     except InvalidGeometry as error:
-        key = conversion.spelling.get(("geometry", error.field), ("geometry",))
-        raise StudyError([file.fault(key, spelled(file.value(key)), error.expected)]) from error
+        raise StudyError([_of_geometry(error, named.mechanism_class, file, conversion)]) from error
     _require_thin_walls(study, file, conversion)
     if study.surroundings != SurroundingsTable():
-        require_room(robot_of(study), file)
+        require_room_in(robot_of(study), file)
     return _with_waypoints(study, file, conversion, named.mechanism_class.pose_names)
+
+
+def _of_geometry(error: InvalidGeometry, kind: type[Mechanism], file: TomlFile, conversion: Conversion) -> Fault:
+    """The fault at the refused field; at the radius if the study gives it and not the wall, which is too thick."""
+    key, expected = conversion.spelling.get(("geometry", error.field)), error.expected
+    if key is None and (radius := kind.Geometry.walls().get(error.field)) is not None:
+        key = conversion.spelling.get(("geometry", radius))
+        expected = f"at least {error.field}, which is {error.found} m by default"
+    key = key or ("geometry",)
+    return file.fault(key, spelled(file.value(key)), expected)
 
 
 def _require_thin_walls(study: Study, file: TomlFile, conversion: Conversion) -> None:

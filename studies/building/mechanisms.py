@@ -18,7 +18,7 @@ from types import ModuleType
 from typing import Any, NamedTuple, TypeGuard
 
 import kinematics
-from kinematics import LinkwrightError, Mechanism
+from kinematics import CLEARANCE, InvalidValue, LinkwrightError, Mechanism
 from studies.errors import spelled
 from studies.study_file import Key
 
@@ -142,6 +142,10 @@ def _usable(name: str, kind: object) -> NamedMechanism:
     if lacking := kind.lacking():
         raise MechanismRefused(name, f"a mechanism without {', '.join(lacking)}", "all hooks of docs/new_mechanism.md")
     _ran(name, f"a prototype of {kind.__name__}", lambda: kind().model())
+    try:
+        CLEARANCE.places(kind())  # it looks at all members
+    except InvalidValue as error:
+        raise MechanismRefused(name, f"{error.what} {error.found}", error.expected) from error
     source = inspect.getsourcefile(kind)
     code = "" if source is None else hashlib.sha256(Path(source).read_bytes()).hexdigest()
     return NamedMechanism(kind, code)

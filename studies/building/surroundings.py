@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
-from kinematics import Obstacle, PayloadHull, Surroundings, hull_depth, lowest_of_base
+from kinematics import (
+    RESERVED_NAMES,
+    InvalidField,
+    InvalidValue,
+    Obstacle,
+    PayloadHull,
+    Surroundings,
+    require_room,
+    taken_names,
+)
+from studies.building.hardware import subtable
 from studies.errors import KeyPath, StudyError, spelled
+from studies.study_file import Conversion, Finding
 
 if TYPE_CHECKING:
     from kinematics import Mechanism
@@ -19,22 +31,48 @@ def surroundings_of(study: Study) -> Surroundings:
     return Surroundings(table.floor, tuple(Obstacle(**row.model_dump()) for row in table.obstacle), hull)
 
 
-def require_room(robot: Mechanism, file: TomlFile) -> None:
+def name_faults(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[tuple[KeyPath, str | int]]:
+    """The path of each obstacle's name that something else has: the row of the obstacle that has it, or its name."""
+    rows = subtable(data, "surroundings").get("obstacle")
+    first: dict[str, int] = {}
+    for i, row in enumerate(rows if isinstance(rows, tuple) else ()):
+        name = row.get("name") if isinstance(row, dict) else None
+        if not isinstance(name, str):
+            continue
+        path: KeyPath = ("surroundings", "obstacle", i, "name")
+        if name in first:
+            yield path, first[name]
+        elif name in taken_names(mechanism):
+            yield path, name
+        first.setdefault(name, i)
+
+
+def names_told(file: TomlFile, conversion: Conversion, data: Mapping[str, Any], mechanism: type[Mechanism]) -> None:
+    """Add a finding for each obstacle's name that another thing has."""
+    for path, other in name_faults(data, mechanism):
+        key, found = conversion.spelling[path], spelled(file.value(conversion.spelling[path]))
+        if isinstance(other, int):
+            line = file.line(conversion.spelling[(*path[:2], other, "name")])
+            found, expected = f"{found}, as on line {line}", "a name, different from those of the other obstacles"
+        else:
+            expected = f"a name that is no member of {mechanism.__name__}, and none of {', '.join(RESERVED_NAMES)}"
+        conversion.findings.append(Finding(key, found, expected))
+
+
+def require_room_in(robot: Mechanism, file: TomlFile) -> None:
     """Check that the base is above the floor, and that the payload is not inside what carries it.
 
     Raises:
         StudyError: at the key of the floor or of the hull.
     """
-    floor, base = robot.surroundings.floor, lowest_of_base(robot)
-    if floor is not None and base is not None and base.height < floor:
-        key = _spelled(file, ("surroundings", "floor"))
-        expected = f"a height below the base: {base.member} reaches down to {base.height:.6g} m"
-        raise StudyError([file.fault(key, spelled(file.value(key)), expected)])
-    depth = hull_depth(robot)
-    if depth > 0.0:
-        key = _spelled(file, ("surroundings", "payload_hull", "high"))
-        expected = f"a hull beside the {robot.tool_member}, which carries it; at home it is {depth:.6g} m inside"
-        raise StudyError([file.fault(key, spelled(file.value(key)), expected)])
+    try:
+        require_room(robot)
+    except InvalidField as error:
+        table: KeyPath = ("payload_hull",) if error.record == "PayloadHull" else ()
+        key = _spelled(file, ("surroundings", *table, error.field))
+        raise StudyError([file.fault(key, spelled(file.value(key)), error.expected)]) from error
+    except InvalidValue as error:  # of a mechanism whose tool's member does not exist
+        raise StudyError([file.fault(("mechanism",), f"{error.what} {error.found}", error.expected)]) from error
 
 
 def _spelled(file: TomlFile, path: KeyPath) -> KeyPath:

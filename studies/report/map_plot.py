@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from textwrap import wrap
 from typing import Any
 
 import matplotlib as mpl
@@ -23,6 +24,8 @@ from studies.stages import MapOutcome, angles_of
 BOUND, OPEN = "#d1495b", "#111111"
 PROVED: Any = {"facecolor": "none", "edgecolor": "#333333", "hatch": "////", "linewidth": 0.25}
 _LEVELS = 14
+_SAME, _AROUND = 1e-9, 1e-3  # of the size of a number: what is one number, and how far the levels around it reach
+_LETTERS = 13  # of the title on one inch
 
 
 def map_picture(outcome: MapOutcome) -> bytes:
@@ -38,9 +41,15 @@ def map_picture(outcome: MapOutcome) -> bytes:
         if outcome.certified is not None:
             drawn += _draw_certified(axes, outcome, scale)
         label_axes(axes, request.section.axes, angles)
-        figure.suptitle(_title(outcome), fontsize=9)
+        figure.suptitle(wrapped(_title(outcome), figure.get_figwidth()), fontsize=9)
         figure.legend(handles=drawn, loc="outside lower center", ncols=1 if len(drawn) < 3 else 2, frameon=False)
         return png(figure)
+
+
+def wrapped(title: str, width: float) -> str:
+    """The title with lines that are no longer than a picture of so many inches."""
+    lines = (line for part in title.splitlines() for line in wrap(part, int(_LETTERS * width)))
+    return "\n".join(lines)
 
 
 def _label(index: Index) -> str:
@@ -75,7 +84,7 @@ def draw_contours(figure: Figure, axes: Axes, chart: Map, name: str, scale: Arra
             artist.set_clip_path(edge, axes.transData)
         for text in lines.labelTexts:
             text.set_visible(edge.contains_point(text.get_position()))
-    figure.colorbar(filled, ax=axes, label=name)
+    figure.colorbar(filled, ax=axes, label=name).ax.ticklabel_format(useOffset=False)
     axes.grid(False)
 
 
@@ -90,7 +99,10 @@ def _levels(chart: Map, bound: float | None) -> Array:
             low = max(low, 2 * bound - high)
         else:
             high = min(high, 2 * bound - low)
-    return np.asarray(MaxNLocator(_LEVELS).tick_values(low, max(high, low + 1e-9 * max(1.0, abs(low)))))
+    size = max(abs(low), abs(high)) or 1.0
+    if high - low < _SAME * size:  # one number everywhere
+        low, high = low - _AROUND * size, high + _AROUND * size
+    return np.asarray(MaxNLocator(_LEVELS).tick_values(low, high))
 
 
 def draw_boundary(axes: Axes, rings: Sequence[Array], scale: Array, label: str, colour: str = BOUND) -> Line2D:

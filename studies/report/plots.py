@@ -14,6 +14,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from design import Map, Problem, Region, Section, index_of, map_of
 from kinematics import Array, Mechanism, PlacedShape, placed_shapes
+from studies.report.around_robot import draw_parts, parts_around
 from studies.report.solids import faces
 
 _COLOURS = ("#0b6e8e", "#d1495b", "#edae49", "#3c7a3f", "#6a4c93", "#8a5a44")
@@ -55,16 +56,21 @@ def section_of(problem: Problem, robot: Mechanism, region: Region, margin: str, 
 def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
     """Each robot in 3-D in its workspace, all in the same scale, with the workspace's edge.
 
-    Of a robot that reaches no pose of the workspace, only the parts with a known place are drawn.
+    What is around the robot is drawn lightly where it is near. Of a robot that reaches no pose of the workspace, only
+    the parts with a known place are drawn.
     """
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.6 * len(robots), 4.2))
-        drawn = {label: _finite(robot.polylines(pose_in(robot, region))) for label, robot in robots.items()}
-        shapes = {label: placed_shapes(robot, pose_in(robot, region)) for label, robot in robots.items()}
+        poses = {label: pose_in(robot, region) for label, robot in robots.items()}
+        drawn = {label: _finite(robot.polylines(poses[label])) for label, robot in robots.items()}
+        shapes = {label: placed_shapes(robot, poses[label]) for label, robot in robots.items()}
         around = [side for own in shapes.values() for shape in own if shape.kind for side in _limits(shape)]
         low, high = _common_box(
             [line for lines in drawn.values() for line in lines.values()] + region.outline() + around
         )
+        parts = {label: parts_around(robot, poses[label], low, high) for label, robot in robots.items()}
+        seen = [polygon for own in parts.values() for part in own for polygon in part.polygons]
+        low, high = _common_box([low[None], high[None], *seen])
         for k, (label, lines) in enumerate(drawn.items(), start=1):
             axes = figure.add_subplot(1, len(robots), k, projection="3d")
             for name, line in lines.items():
@@ -72,6 +78,7 @@ def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
                     colour, width = _LINES[kind]
                     axes.plot(*line.T, color=colour, linewidth=width)
             _draw_bodies(axes, shapes[label], low, high)
+            draw_parts(axes, parts[label])
             for edge in region.outline():
                 axes.plot(*edge.T, color="#3c7a3f", linewidth=0.8, alpha=0.7)
             axes.set(title=label, xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
@@ -79,6 +86,9 @@ def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
             axes.locator_params(nbins=5)
             axes.set_box_aspect(high - low, zoom=1.1)  # as long as the limits: equal scales
             axes.view_init(elev=18, azim=-60)
+        if handles := [part.handle for part in next(iter(parts.values()))]:
+            figure.legend(handles=handles, loc="lower center", ncols=2, frameon=False)
+            figure.subplots_adjust(bottom=0.08 + 0.05 * ((len(handles) + 1) // 2))
         return png(figure)
 
 

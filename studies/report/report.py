@@ -12,6 +12,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from kinematics import JointMotion
 from studies.report import plots
+from studies.report.machine_rows import machine_rows
 from studies.report.tables import (
     FRAME,
     MEMBERS,
@@ -50,6 +51,7 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
         bounds=outcome.problem.fvi_bounds,
         region=repr(outcome.region),
         geometry=_geometry_rows(outcome),
+        machine=machine_rows(outcome.robot, outcome.study),
         before=outcome.before,
         margin_columns=margin_columns(outcome),
         margins=margin_rows(outcome),

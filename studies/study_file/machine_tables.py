@@ -138,10 +138,3 @@ class SurroundingsTable(StudyTable):
     """Boxes, such as a conveyor or a frame."""
     payload_hull: Annotated[PayloadHullTable | None, table_of(PayloadHullTable)] = None
     """The room that the payload takes. None for a payload without size."""
-
-    @field_validator("obstacle")
-    @classmethod
-    def _names_differ(cls, rows: tuple[ObstacleTable, ...]) -> tuple[ObstacleTable, ...]:
-        if len({row.name for row in rows}) < len(rows):
-            raise ValueError("two obstacles have one name")
-        return rows

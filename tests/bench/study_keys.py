@@ -8,7 +8,7 @@ from typing import Any, get_args
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from kinematics import MECHANISMS
+from kinematics import MATERIALS, MECHANISMS, Mechanism, Structure
 from studies.building.against_mechanism import study_table
 from studies.study_file.keys import Key, Table
 from studies.study_file.study import Study
@@ -16,7 +16,13 @@ from tests.bench.page import ROOT, write_between
 
 PAGE = ROOT / "docs" / "study_file.md"
 NAME, BY = "keys", "python -m tests.bench.study_keys"
-_OF_THE_MECHANISM = {"coordinates": "a coordinate of the pose", "masses": "a mass of the mechanism"}
+_OF_THE_MECHANISM = {  # the key, and what it holds
+    "coordinates": ("a coordinate of the pose", "numbers"),
+    "masses": ("a mass of the mechanism", "numbers"),
+    "materials": ("a kind of member of the mechanism", "the name of a material"),
+}
+
+_SIGNED = "The method `robot.internal_determinant(poses)` keeps the sign; the margin of that name is its modulus."
 
 
 def main() -> None:
@@ -45,7 +51,7 @@ def _section(heading: str, model: type[BaseModel]) -> str:
     if "kind" in model.model_fields:
         heading += f' with `kind = "{get_args(model.model_fields["kind"].annotation)[0]}"`'
     fields = {name: f for name, f in model.model_fields.items() if _node(f) or name in _OF_THE_MECHANISM}
-    rows = [f"| {_key(n, f)} | {_holds(f)} | {_default(f)} | {f.description or ''} |" for n, f in fields.items()]
+    rows = [f"| {_key(n, f)} | {_holds(n, f)} | {_default(f)} | {f.description or ''} |" for n, f in fields.items()]
     return "\n".join(
         [f"### {heading}", "", "| key | holds | default | meaning |", "| --- | --- | --- | --- |", *rows, ""]
     )
@@ -54,16 +60,16 @@ def _section(heading: str, model: type[BaseModel]) -> str:
 def _key(name: str, field: FieldInfo) -> str:
     node = _node(field)
     if node is None:
-        return _OF_THE_MECHANISM[name]
+        return _OF_THE_MECHANISM[name][0]
     return f"`{name}`, `{name}_{node.suffix}`" if isinstance(node, Key) and node.suffix else f"`{name}`"
 
 
-def _holds(field: FieldInfo) -> str:
+def _holds(name: str, field: FieldInfo) -> str:
     node = _node(field)
     if isinstance(node, Key):
         of_mechanism = node.expected.endswith(" of") and not node.choices
         return f"{node.describe()} those below" if of_mechanism else node.describe()
-    return "numbers" if node is None else "tables" if node.rows else "a table"
+    return _OF_THE_MECHANISM[name][1] if node is None else "tables" if node.rows else "a table"
 
 
 def _default(field: FieldInfo) -> str:
@@ -80,21 +86,32 @@ def _spelled(value: object) -> str:
 
 
 def _of_mechanisms() -> str:
-    """What each mechanism's own keys are called, with their SI units."""
-    lines = ["### Of each mechanism", "", "| mechanism | pose | `[geometry]` | `[inertia]` | `[ranges]` | margins |"]
-    lines.append("| --- " * 6 + "|")
+    """What each mechanism's own keys are called, with their SI units or default materials."""
+    lines = [
+        "### Of each mechanism",
+        "",
+        "| mechanism | pose | `[geometry]` | `[inertia]` | `[structure]` | `[ranges]` | margins |",
+    ]
+    lines.append("| --- " * 7 + "|")
     for name, kind in MECHANISMS.items():
         keys = study_table(kind, {}).keys
-        own = [_named(keys[table]) for table in ("geometry", "inertia", "ranges")]
+        own = [_named(keys["geometry"]), _named(keys["inertia"]), _members(kind), _named(keys["ranges"])]
         lines.append(f"| {' | '.join([name, ', '.join(kind.pose_names), *own, ', '.join(kind.margins)])} |")
     return "\n".join(lines) + "\n"
+
+
+def _members(mechanism: type[Mechanism]) -> str:
+    """The kinds of members, each with its default material."""
+    names = {material: name for name, material in MATERIALS.items()}
+    return ", ".join(f"`{kind}` ({names[getattr(Structure(), kind)]})" for kind in mechanism.member_kinds())
 
 
 def _margins() -> str:
     """Every margin of any mechanism, in its own words."""
     margins = {name: margin for kind in MECHANISMS.values() for name, margin in kind.margins.items()}
     rows = [f"| `{name}` | {margin.unit} | {margin.words} |" for name, margin in margins.items()]
-    return "\n".join(["### The margins", "", "| margin | unit | what it is |", "| --- | --- | --- |", *rows, ""])
+    head = ["### The margins", "", "| margin | unit | what it is |", "| --- | --- | --- |"]
+    return "\n".join([*head, *rows, "", _SIGNED, ""])
 
 
 def _named(table: Key | Table) -> str:

@@ -208,6 +208,17 @@ def test_where_nothing_is_seen_the_finest_grid_was_looked_at_and_says_its_step()
     assert found.step == pytest.approx((2.0 / (FINEST - 1),) * 2)
 
 
+def test_a_constant_index_that_misses_the_bound_is_not_refined_any_further() -> None:
+    found = level_set(made(lambda p: np.full(p.shape[:-1], 0.1)), Section(SQUARE, ("x", "y")), NAMES, 0.2)
+    assert (found.figures.area, found.settled) == (0.0, True)
+    assert len(found.map.first) == 65
+
+
+def test_a_constant_index_has_no_deviation() -> None:
+    found = level_set(made(lambda p: np.full(p.shape[:-1], 0.1)), Section(SQUARE, ("x", "y")), NAMES, 0.05)
+    assert (found.figures.area, found.figures.deviation) == (pytest.approx(4.0), 0.0)
+
+
 def test_a_map_of_reach_counts_what_is_in_reach_whatever_the_bound() -> None:
     robot, section = Heli4(), Section(Box(x=(-1.5, 1.5), y=(-1.5, 1.5), z=-0.7, theta=0.0), ("x", "y"))
     index = index_of(robot, "reach")

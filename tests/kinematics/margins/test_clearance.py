@@ -26,6 +26,7 @@ from kinematics import (
     Surroundings,
     hull_depth,
     lowest_of_base,
+    require_room,
 )
 from kinematics.margins.clearance.solids import rooms
 from kinematics.mathematics import Convex, signed_distance
@@ -257,12 +258,29 @@ def test_a_member_that_joins_nothing_is_told() -> None:
         Loose().margin("clearance", Loose().home)
 
 
+IN_THE_PLATE = Surroundings(payload_hull=PayloadHull(0.03, -0.003, 0.003))
+
+
+def boxed(name: str) -> Surroundings:
+    return Surroundings(obstacles=(Obstacle(name, (0.0, 0.0, -2.0), (1.0, 1.0, -1.5)),))
+
+
 @pytest.mark.parametrize(
     ("made", "words"),
     [
         (lambda: Obstacle("box", (0, 0, 0), (1, 1, 0)), "Obstacle 'box' high: .* expected above low"),
         (lambda: PayloadHull(0.0, 0.0, 1.0), "PayloadHull radius: found 0.0"),
         (lambda: PayloadHull(0.1, 1.0, 1.0), "PayloadHull high: found 1.0; expected above low"),
+        (
+            lambda: Delta().with_surroundings(boxed("rod 2 a")),
+            "'rod 2 a': found rod 2 a; expected a name that is no member",
+        ),
+        (
+            lambda: Peppermill(surroundings=boxed("payload")),
+            "found payload; .* none of base, floor, payload, the floor",
+        ),
+        (lambda: require_room(Delta().with_surroundings(Surroundings(floor=0.3))), "floor: .* motor 1 reaches down to"),
+        (lambda: require_room(Delta().with_surroundings(IN_THE_PLATE)), "high: .* expected a hull beside the plate"),
         (lambda: Surroundings(floor=float("nan")), "Surroundings floor"),
         (lambda: Surroundings(obstacles=(Obstacle("a", (0, 0, 0), (1, 1, 1)),) * 2), "a different name for each"),
     ],

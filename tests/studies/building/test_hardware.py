@@ -16,6 +16,7 @@ from studies.building.hardware import hardware_tables
 from studies.building.load import load_study
 from studies.building.objects import robot_of
 from studies.committed.optimum import committed, read_optimum
+from studies.errors import StudyError
 from studies.results.output_folder import OutputFolder
 from studies.results.outputs import write_model, write_setpoints
 from studies.stages.cycle_stage import time_cycle
@@ -199,3 +200,9 @@ def test_an_export_spreads_the_rods_as_the_study_does_unless_told_otherwise(tmp_
     assert texts["plain", None] == texts["plain", 0.0] == texts["uniform", 0.0]
     assert texts["uniform", None] == texts["uniform", UNIFORM] == texts["plain", UNIFORM]
     assert texts["plain", None] != texts["uniform", None]
+
+
+def test_a_radius_that_is_thinner_than_the_default_wall_is_told_at_the_radius(tmp_path: Path) -> None:
+    words = r"geometry\.rod_radius: found 0\.001; expected at least rod_wall, which is 0\.00\d+ m by default"
+    with pytest.raises(StudyError, match=words):
+        study_of(tmp_path, GIVEN.replace("[region]", "[geometry]\nrod_radius = 0.001\n[region]", 1))

@@ -161,6 +161,12 @@ BROKEN = {
         "ValueError: here",
         "biglide.py:",
     ),
+    "a member that joins nothing": (
+        block("python").replace('(f"slide {k + 1}", "tool")', '(f"nowhere {k + 1}",)'),
+        "biglide:Biglide",
+        "'nowhere 1'",
+        'a joint that another member has too, or "base"',
+    ),
     "no name": (None, "biglide:", 'found "biglide:"', '"module:Class", or one of'),
     "a path": (None, "../biglide.py:Biglide", 'found "../biglide.py:Biglide"', '"module:Class", or one of'),
 }

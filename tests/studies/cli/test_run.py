@@ -47,6 +47,7 @@ def test_the_report_opens_offline(small_run: SmallRun) -> None:
     page = (small_run[0] / "out" / "report.html").read_text()
     assert "rod_middle as of the members; drive_train (gear_ratio 1; motor_inertia 0;" in page
     assert '<td>limits not kept by this law</td><td class="n">none</td>' in page
+    assert '<td>material of each rod</td><td class="n">carbon tube: density 1600' in page
     sources = re.findall(r'(?:src|href)="([^"]{0,40})', page)
     assert len(sources) >= 5
     assert all(source.startswith("data:image/png;base64,") for source in sources)

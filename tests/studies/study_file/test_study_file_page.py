@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from kinematics import Heli4, Redundant3T1R
 from studies.building.load import load_study
 from studies.building.objects import path_of, robot_of
 from studies.stages.cycle_stage import time_cycle
+from studies.study_file import questions
 from studies.study_file.toml_file import read_toml
 from tests.bench.study_keys import BY, NAME, PAGE, tables
 
@@ -34,6 +36,20 @@ def test_every_key_has_a_meaning() -> None:
     assert [row for row in rows if row.endswith("|  |")] == []
 
 
+def test_the_page_says_that_the_margin_of_the_signed_determinant_is_its_modulus() -> None:
+    assert "keeps the sign; the margin of that name is its modulus" in TEXT
+    for robot in (Heli4(), Redundant3T1R()):
+        signed = robot.internal_determinant(robot.home)
+        assert abs(signed) == robot.margin("internal_determinant", robot.home) > 0.0
+
+
+def test_the_page_lists_every_kind_of_member_with_its_usual_material() -> None:
+    for name, kinds in {"Delta": "`arm` (aluminium), `rod` (carbon tube), `plate` (aluminium)"}.items():
+        (row,) = (line for line in TEXT.splitlines() if line.startswith(f"| {name} |"))
+        assert kinds in row
+    assert "| a kind of member of the mechanism | the name of a material |" in TEXT
+
+
 def test_the_example_is_timed_and_its_waypoints_may_stand_in_a_file(tmp_path: Path) -> None:
     (tmp_path / "waypoints.csv").write_text(CSV)
     paths = []
@@ -52,3 +68,11 @@ def test_the_example_of_a_cycle_has_another_payload_on_the_way_back(tmp_path: Pa
     asked = load_study(read_toml(file)).trajectory
     assert asked is not None
     assert (asked.payload, asked.payload_back) == (1.0, 0.0)
+
+
+def test_the_page_names_every_table_of_both_questions() -> None:
+    said = TEXT.partition("## Two questions")[2].partition("## An example")[0]
+    design, cycle = said.split("The cycle question")
+    words = {"ranges": "joint ranges", "requirement": "requirements", "code": "mechanism"}
+    assert [table for table in questions.DESIGN if words.get(table, table) not in design] == []
+    assert [table for table in questions.CYCLE if table not in cycle] == []
