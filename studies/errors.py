@@ -53,10 +53,11 @@ class StudyError(LinkwrightError):
 
 @dataclass(frozen=True)
 class Failed:
-    """A requirement that is not met: the wanted bound, the worst value found, and its pose (empty on a path).
+    """A requirement that is not met: the wanted bound, the worst value found, and its pose (empty if there is none).
 
-    `place` is where the study asks for it: file, line and key; empty where no file does. `part` is the part of the
-    robot that has the worst value, such as "limb 1"; None if there is no single one.
+    `when` is the time or the place on a path, in words; empty over a region. `place` is where the study asks for it:
+    file, line and key; empty where no file does. `part` is the part of the robot that has the worst value, such as
+    "limb 1"; None if there is no single one.
     """
 
     margin: str
@@ -65,15 +66,17 @@ class Failed:
     pose: tuple[float, ...]
     place: str = ""
     part: str | None = None
+    when: str = ""
 
     def as_data(self) -> dict[str, Any]:
         """Its fields, the bound by its word."""
         return {"margin": self.margin, self.bound.word: self.bound.value} | {
-            name: getattr(self, name) for name in ("found", "pose", "place")
+            name: getattr(self, name) for name in ("found", "pose", "place", "part", "when")
         }
 
     def __str__(self) -> str:
         where = f" at pose {_pose(self.pose)}" if self.pose else ""
+        where += f", {self.when}" if self.when else ""
         found = f"{self.found:.6g}" if math.isfinite(self.found) else "no value, as a limb cannot reach,"
         words = self.bound.word.replace("_", " ")
         at = f"{self.place}: " if self.place else ""

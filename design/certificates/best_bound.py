@@ -15,7 +15,7 @@ from kinematics import Bound, FviBounds, Mechanism, positive
 
 _MOST_TRIES = 12  # bounds that are tried, including the refuted ones
 _COARSEST = 6  # most doublings of the tolerance
-_SHARES = 4  # one try and a bisection of the doublings
+_SHARES = 4  # of the boxes: one try may use as many
 
 
 @dataclass(frozen=True)
@@ -48,11 +48,12 @@ def best_bound(
     It is the largest one of a margin that is better larger, the smallest one of a margin that is better smaller. The
     first try is the worst sampled value, eased by the tolerance. If it is refuted, the value of the counterexample
     replaces the worst one. If it is undecided, the search finds the smallest k for which a distance of 2^k tolerances
-    is proved, so compare `sampled` with the bound. For a positive lower bound none of 0 or below is tried, as it says
-    nothing, unless the tolerance itself requires it.
+    is proved, from the largest k down, as a wide distance is proved fast. So compare `sampled` with the bound. For a
+    positive lower bound none of 0 or below is tried, as it says nothing, unless the tolerance itself requires it.
 
     Args:
-        most_boxes, seconds: for all tries together. One try gets a quarter of the boxes and half of the time left.
+        most_boxes, seconds: for all tries together. One try gets a quarter of the boxes and half of the time left,
+            the first one a quarter of it.
         robot, region, margin, bounds, characteristic_length, progress: as in `certify`.
     """
     tolerance, budget = positive("tolerance", tolerance), Budget(seconds)
@@ -67,7 +68,7 @@ def best_bound(
         if not np.isfinite(sampled) or undecided + 1 >= proved or budget.spent:
             break
         attempt = replace(statement, bound=replace(weakest, value=sampled).eased(math.ldexp(tolerance, doublings)))
-        certificate = answer(attempt, region, share, budget.share(2), progress)
+        certificate = answer(attempt, region, share, budget.share(2 if undecided >= 0 else 4), progress)
         if certificate.counterexample is not None:
             sampled = float(statement.value(certificate.counterexample))
             continue
@@ -75,7 +76,7 @@ def best_bound(
             best, proved = certificate, doublings
         else:
             undecided = doublings
-        doublings = (undecided + proved) // 2
+        doublings = proved - 1
     return BestBound(best, sampled) if best else None
 
 

@@ -17,7 +17,7 @@ class SynthesisFailed(LinkwrightError):
 
     def __init__(self, reason: str, status: str, best: Candidate | None = None) -> None:
         self.reason, self.status, self.best = reason, status, best
-        seen = f"; best found: {best}" if best is not None else ""
+        seen = f"\n  the best geometry found: {best}" if best is not None else ""
         super().__init__(f"no optimum: {reason} (solver status: {status}){seen}")
 
 

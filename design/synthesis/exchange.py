@@ -50,6 +50,7 @@ class Candidate:
         objective: the worst value of the objective.
         good: the same, negative if a smaller one is better.
         shortfall: by how much the worst requirement breaks its bound; <= 0 if all hold.
+        problem: what was asked.
     """
 
     robot: Mechanism
@@ -57,6 +58,7 @@ class Candidate:
     objective: float
     good: float
     shortfall: float
+    problem: Problem
 
     @property
     def rank(self) -> tuple[float, float]:
@@ -64,8 +66,24 @@ class Candidate:
         return -max(self.shortfall, 0.0), self.good
 
     def __str__(self) -> str:
-        short = f", requirements short by {self.shortfall:.3g}" if self.shortfall > 0.0 else ""
-        return f"{self.objective:.6g}{short} with {self.robot.geometry}"
+        kept = "it keeps every requirement, but the solver did not confirm it as an optimum"
+        lines = self._missed() or [kept]
+        own = self.robot.geometry.as_dict()
+        fields = dict.fromkeys(v.field for v in self.problem.variables)
+        lines += [f"{name} = {own[name]}" for name in fields]
+        return "\n  ".join([f"{self.problem.objective} {self.objective:.6g}", *lines])
+
+    def _missed(self) -> list[str]:
+        """Each requirement that this geometry misses, with the pose where it is worst."""
+        lines = []
+        for r in self.problem.requirements:
+            worst, unit = self.worst[r.margin], self.robot.margins[r.margin].unit
+            if not r.bound.room(worst.value) >= 0.0:
+                pose = ", ".join(f"{round(v, 6) + 0.0:.4g}" for v in worst.pose.tolist())
+                wanted = f"{r.bound.word.replace('_', ' ')} {r.bound.value:g}"
+                shown = f"{worst.value:.6g} {unit}".strip()
+                lines.append(f"it misses {r.margin}: found {shown} at pose ({pose}); expected {wanted} {unit}".strip())
+        return lines
 
 
 @dataclass
@@ -99,7 +117,7 @@ class Exchange:
         """The candidate of a geometry with a dense search. The best one is kept."""
         short = max((-r.bound.room(worst[r.margin].value) for r in self.problem.requirements), default=-np.inf)
         objective = worst[self.problem.objective].value
-        found = Candidate(robot, worst, objective, self.problem.good(objective), short)
+        found = Candidate(robot, worst, objective, self.problem.good(objective), short, self.problem)
         if np.isfinite(found.objective) and (self.seen is None or found.rank > self.seen.rank):
             self.seen = found
         self.last = found if found.shortfall > 0.0 else self.last

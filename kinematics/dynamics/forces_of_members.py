@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from kinematics.arrays import Array, checked
-from kinematics.dynamics.buckling_and_yield import Size, bending_of, safety_factors
+from kinematics.dynamics.buckling_and_yield import LARGEST, Size, bending_of, safety_factors
 from kinematics.dynamics.drive_torque import require_payload
 from kinematics.dynamics.member_loads import case_in_motion
 from kinematics.dynamics.stiffness import transmission
@@ -27,6 +27,7 @@ class MemberForces(NamedTuple):
         torsion: (..., k) the moment about it [N m].
         joint_force: (..., k) the largest force in a joint of it [N].
         safety: (..., k) the smallest factor.
+        buckling: (..., k) the factor against buckling alone, or `LARGEST` if it cannot buckle.
     """
 
     names: tuple[str, ...]
@@ -35,6 +36,7 @@ class MemberForces(NamedTuple):
     torsion: Array
     joint_force: Array
     safety: Array
+    buckling: Array
 
 
 def member_forces(robot: Mechanism, payload: float, pose: Array, velocity: Array, acceleration: Array) -> MemberForces:
@@ -56,16 +58,17 @@ def member_forces(robot: Mechanism, payload: float, pose: Array, velocity: Array
     require_payload(payload)
     lead, cuts = given[0].shape[:-1], [cut.member for cut in transmission(robot).cuts]
     if not cuts:
-        return MemberForces((), *(np.zeros((*lead, 0)) for _ in range(5)))
+        return MemberForces((), *(np.zeros((*lead, 0)) for _ in range(6)))
     found = evaluate(robot.program(_of_cuts), *given, np.full((*lead, 1), payload))
     lost = np.isnan(found[-1]).any(axis=-1)
     names, parts = tuple(dict.fromkeys(cuts)), []
-    for values in (found[0], -found[0], *found[1:4], -found[4]):
+    for values in (found[0], -found[0], *found[1:4], -found[4], -found[5]):
         values[lost] = np.nan
         columns = [values[..., [cut == name for cut in cuts]].max(axis=-1) for name in names]
         parts.append(np.stack(columns, axis=-1))
-    pull, push, bending, torsion, joint_force, least = parts
-    return MemberForces(names, np.where(pull >= push, pull, -push), bending, torsion, joint_force, -least)
+    pull, push, bending, torsion, joint_force, least, buckling = parts
+    tension = np.where(pull >= push, pull, -push)
+    return MemberForces(names, tension, bending, torsion, joint_force, -least, -buckling)
 
 
 def _of_cuts(robot: Mechanism, model: Model) -> Build:
@@ -79,9 +82,9 @@ def _of_cuts(robot: Mechanism, model: Model) -> Build:
         for other in others:
             tension = ca.if_else(ca.fabs(tension) >= ca.fabs(other), tension, other)
         joint = reduce(ca.fmax, [ca.norm_2(force) for force in load.joint_forces()])
-        factor = reduce(ca.fmin, list(safety_factors(load, size).values()))
-        rows.append(
-            ca.horzcat(tension, bending_of(load, size), size.modulus(load.along.T @ load.moment), joint, factor)
-        )
+        factors = safety_factors(load, size)
+        safety, buckling = reduce(ca.fmin, list(factors.values())), factors.get("buckling", LARGEST)
+        torsion = size.modulus(load.along.T @ load.moment)
+        rows.append(ca.horzcat(tension, bending_of(load, size), torsion, joint, safety, buckling))
     table = ca.vertcat(*rows)
-    return [model.pose, velocity, acceleration, payload], [table[:, k] for k in range(5)]
+    return [model.pose, velocity, acceleration, payload], [table[:, k] for k in range(6)]

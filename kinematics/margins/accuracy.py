@@ -71,6 +71,7 @@ class _Accuracy(Margin):
     """The largest error of some coordinates of the twist."""
 
     sense = -1
+    lowest = 0.0
     records = ("inertia", "structure")
     angles: ClassVar[bool]
 

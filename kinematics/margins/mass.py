@@ -12,6 +12,7 @@ class Mass(Margin):
 
     name = "mass"
     sense = -1
+    lowest = 0.0
     records = ("inertia", "structure")
     unit = "kg"
     words = "mass of all moving bodies, without a payload"

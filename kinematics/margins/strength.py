@@ -53,9 +53,12 @@ class Strength(Margin):
         return [f"{own.member}, {what}" for own in bearers for what in safety_factors(own, size)] or None
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
-        """Capacity - c load >= 0, with t = W^-1 Q enclosed by `_Enclosed`, and an arm's bending by `_Turned`."""
+        """Capacity - c load >= 0, with t = W^-1 Q enclosed by `_Enclosed`, and an arm's bending by `_Turned`.
+
+        For c <= 0 it says only that there are finite forces, as the factor is never negative.
+        """
         case, acceleration = case_at_rest(robot), robot.load.acceleration
-        if not positive or not case.cuts:
+        if not case.cuts:
             return super().to_show(robot, claim, inside, positive)
         system, bent = _system(case), [across for load in case.loads(case.shared()) for across in _across(load)]
         count, directions = system.matrix.shape[0], bent[0].shape[1]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, fields
@@ -85,6 +86,7 @@ class Margin(ABC):
         name: its name in studies and files.
         sense: 1 if a larger number is better, so that a bound says `at_least`; -1 if a smaller one is better, so that a
             bound says `at_most`.
+        lowest: no value is below it, for any geometry.
         unit: the unit of its numbers; empty if there is none. `rad or m` depends on the joint.
         words: a description for people.
         holds_on_paths: whether it must be above 0 at every pose of a path.
@@ -98,6 +100,7 @@ class Margin(ABC):
 
     name: ClassVar[str]
     sense: ClassVar[int] = 1
+    lowest: ClassVar[float] = -math.inf
     unit: ClassVar[str] = ""
     words: ClassVar[str]
     holds_on_paths: ClassVar[bool] = False

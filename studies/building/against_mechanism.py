@@ -121,10 +121,8 @@ def at_odds(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[Key
     for i, margin in _rows(data, "requirement", "margin"):
         if not isinstance(margin, str) or margin not in mechanism.margins:
             yield ("requirement", i, "margin")
-        elif mechanism.margins[margin].word not in (row := data["requirement"][i]):
+        elif mechanism.margins[margin].word not in data["requirement"][i]:
             yield ("requirement", i, mechanism.margins[margin].word)
-        elif margin == "reach" and _is_below_zero(row["at_least"]):
-            yield ("requirement", i, "at_least")
 
 
 def wrong_words(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[tuple[KeyPath, str]]:
@@ -134,6 +132,27 @@ def wrong_words(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator
         for word in ("at_least", "at_most"):
             if margin is not None and word != margin.word and word in data["requirement"][i]:
                 yield ("requirement", i, word), margin.right_word
+
+
+def impossible_bounds(data: Mapping[str, Any], mechanism: type[Mechanism]) -> Iterator[tuple[KeyPath, str]]:
+    """The path of each bound that no requirement of its margin may have, and what would be right."""
+    for i, name in _rows(data, "requirement", "margin"):
+        margin, row = mechanism.margins.get(name) if isinstance(name, str) else None, data["requirement"][i]
+        if margin is None:
+            continue
+        if name == "reach" and _is_below(row.get("at_least"), 0.0):
+            yield ("requirement", i, "at_least"), "a finite number; for the margin reach, 0 or more"
+        if margin.sense < 0 and _is_below(row.get("at_most"), margin.lowest):
+            yield ("requirement", i, "at_most"), f"{margin.lowest:g} or more, as {name} is never below it"
+
+
+def repeated_margins(data: Mapping[str, Any]) -> Iterator[tuple[KeyPath, KeyPath, str]]:
+    """Of each further requirement on a margin: its path, that of the first one, and the margin."""
+    first: dict[str, KeyPath] = {}
+    for i, name in _rows(data, "requirement", "margin"):
+        path: KeyPath = ("requirement", i, "margin")
+        if isinstance(name, str) and (known := first.setdefault(name, path)) != path:
+            yield path, known, name
 
 
 def _counted(node: Key | Table, joints: int) -> Key | Table:
@@ -229,8 +248,8 @@ def _rows(data: Mapping[str, Any], name: str, key: str) -> Iterator[tuple[int, A
             yield i, row[key]
 
 
-def _is_below_zero(value: object) -> bool:
-    return isinstance(value, int | float) and value < 0
+def _is_below(value: object, least: float) -> bool:
+    return isinstance(value, int | float) and value < least
 
 
 def _numbers(value: object) -> list[float]:

@@ -8,7 +8,13 @@ from typing import Any
 from pydantic import ValidationError
 
 from kinematics import InvalidGeometry, Mechanism
-from studies.building.against_mechanism import at_odds, study_table, wrong_words
+from studies.building.against_mechanism import (
+    at_odds,
+    impossible_bounds,
+    repeated_margins,
+    study_table,
+    wrong_words,
+)
 from studies.building.mechanisms import MechanismRefused, NamedMechanism, mechanism_named
 from studies.building.objects import path_of, robot_of
 from studies.building.surroundings import names_told, require_room_in
@@ -53,6 +59,12 @@ def load_study(file: TomlFile, allow_code: bool = False) -> Study:
             conversion.findings.append(Finding(key, f"{key[-1]} = {spelled(file.value(key))}", expected))
             wrong.discard((*path[:-1], expected.partition(",")[0]))
         names_told(file, conversion, data, mechanism)
+        for path, expected in impossible_bounds(data, mechanism):
+            key = conversion.spelling[path]
+            conversion.findings.append(Finding(key, spelled(file.value(key)), expected))
+        for path, first, margin in repeated_margins(data):
+            expected = f"one requirement a margin; line {file.line(first)} has the first one on {margin}"
+            conversion.findings.append(Finding(path, f"a second requirement on {margin}", expected))
     else:
         table = table_of(Study)
         data = conversion.to_si(_without_the_mechanism_s(raw), table)

@@ -176,7 +176,7 @@ def trajectory(
         timing = time_cycle(asked, robot)
         if weakness := timing.weakness():
             tell(Lasting(weakness))
-    require_on_cycle(asked, timing)
+        require_on_cycle(asked, timing)
     print_timing(timing, write_setpoints(timing, asked, folder) if folder else Written(), json)
 
 

@@ -97,8 +97,8 @@ def _requirements(study: Study, outcome: Outcome) -> list[Row]:
     for r in outcome.problem.requirements:
         worst = outcome.worst[r.margin]
         rows.append(keeps(f"required {r.margin}", r.bound, worst.value, worst.pose.tolist(), outcome.part(r.margin)))
-        if r.margin in outcome.on_cycle:
-            rows.append(keeps(f"required {r.margin} on the cycle", r.bound, outcome.on_cycle[r.margin], None))
+        if (there := outcome.on_cycle.get(r.margin)) is not None:
+            rows.append(keeps(f"required {r.margin} on the cycle", r.bound, there.value, there.pose, there.part))
     own = outcome.prototype
     keeps_all = own is not None and all(r.bound.room(own[r.margin].value) >= 0.0 for r in outcome.problem.requirements)
     if study.optimise is not None and own is not None and keeps_all:

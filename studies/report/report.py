@@ -71,6 +71,7 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
         peaks=_peak_rows(outcome.timing) if outcome.timing else [],
         member_columns=MEMBERS,
         members=member_rows(outcome.timing) if outcome.timing else [],
+        weakness=outcome.timing.weakness() if outcome.timing else "",
         frame_columns=FRAME,
         frame=frame_rows(outcome.timing) if outcome.timing else [],
         stated=_stated(outcome.timing.setpoints.header) if outcome.timing else [],

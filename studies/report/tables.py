@@ -9,14 +9,18 @@ from trajectory import FRAME_UNITS
 
 FRAME = ("on the frame", "peak", "at [s]", "RMS", "peak along x", "along y", "along z")
 MEMBERS = (
+    "",
     "member",
-    "tension [N], below 0 compression",
+    "largest tension [N]",
+    "at [s]",
+    "largest compression [N]",
     "at [s]",
     "bending [N m]",
     "torsion [N m]",
     "joint force [N]",
     "safety factor",
     "smallest at [s]",
+    "fails first by",
 )
 PROOFS = ("claim at every pose", "answer", "boxes", "time [s]", "worst sampled", "room to the bound", "at pose")
 
@@ -61,7 +65,7 @@ def frame_rows(timing: Timing) -> list[tuple[str, ...]]:
 def member_rows(timing: Timing) -> list[tuple[str, ...]]:
     """What each member bears over the cycle, in the columns `MEMBERS`, the nearest to its limit first."""
     return [
-        (peak.member, *(f"{value:.4g}" for name, value in peak.as_dict().items() if name != "member"))
+        ("BREAKS" if peak.breaks else "", peak.member, *(f"{value:.4g}" for value in peak.numbers()), peak.fails_by)
         for peak in sorted(timing.members, key=lambda peak: peak.safety)
     ]
 

@@ -1,9 +1,10 @@
 """The stages of a study; each takes data and returns data."""
 
 from studies.stages.claim_rows import ROUNDING, Row, agrees, keeps, same, same_digest, shown_pose
-from studies.stages.cycle_stage import Timing, require_on_cycle, time_cycle
+from studies.stages.cycle_stage import Timing, time_cycle
 from studies.stages.map_options import MapRequest, angles_of, map_request
 from studies.stages.map_stage import MapOutcome, run_map, unit_of
+from studies.stages.on_cycle import WorstOnCycle, require_on_cycle
 from studies.stages.pipeline import GIVEN, Outcome, certified, designed, run, with_cycle
 from studies.stages.proofs import Claim, Proof, Question, claims_of, prove_claims, question_of
 from studies.stages.timed_stage import Lasting, Progress, stage
@@ -22,6 +23,7 @@ __all__ = [
     "Question",
     "Row",
     "Timing",
+    "WorstOnCycle",
     "agrees",
     "angles_of",
     "became_worse",

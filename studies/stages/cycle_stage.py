@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from design import Problem, Region
+from design import Region
 from kinematics import Bound, InvalidField, LinkwrightError, Mechanism, to_actuators
-from studies.building import approach_limits, home_of, leaving, limits_of, path_of, problem_of, region_of, timing_of
+from studies.building import approach_limits, home_of, leaving, limits_of, path_of, region_of, timing_of
 from studies.errors import ApproachFailed, Failed, RequirementFailed
 from studies.study_file import Study
 from trajectory import (
@@ -22,7 +21,6 @@ from trajectory import (
     Move,
     Path,
     Setpoints,
-    Way,
     cycle_setpoints,
     frame_peaks,
     lower_bound,
@@ -85,57 +83,30 @@ class Timing:
     def loads(self) -> dict[str, Any]:
         """What the machine bears and what its frame feels, as plain data; no claim of the optimum."""
         frame = {name: peak.as_dict() for name, peak in self.frame.items()}
-        return {"frame_reaction": frame, "members": [member.as_dict() for member in self.members]}
+        members = [member.as_dict() for member in self.members]
+        return {"frame_reaction": frame, "members": members, "would_break": [member.member for member in self.broken]}
 
     @property
     def weakest(self) -> MemberPeak | None:
         """The member nearest its limit; None if no member's strength is known."""
         return min(self.members, key=lambda member: member.safety, default=None)
 
+    @property
+    def broken(self) -> list[MemberPeak]:
+        """The members that the cycle would break, the nearest to its limit first."""
+        return sorted((member for member in self.members if member.breaks), key=lambda member: member.safety)
+
     def weakness(self) -> str:
-        """What to say of a member that the cycle would break; empty if there is none."""
-        if (worst := self.weakest) is None or worst.safety >= 1.0:
+        """What to say of the members that the cycle would break; empty if there are none."""
+        if not (broken := self.broken):
             return ""
+        worst, more = broken[0], len(broken) - 1
+        others = f"; {more} more member{'s' if more > 1 else ''} would break too" if more else ""
         return (
-            f"this cycle would break {worst.member}: its safety factor falls to {worst.safety:.3g}, below 1, "
-            f"at {worst.safety_at:.4g} s; a requirement on the margin strength would refuse such a cycle"
+            f"this cycle would break {worst.member} by {worst.fails_by}: its safety factor falls to "
+            f"{worst.safety:.3g}, below 1, at {worst.safety_at:.4g} s{others}; a requirement on the margin strength "
+            "would refuse such a cycle"
         )
-
-
-def margins_on(
-    problem: Problem, robot: Mechanism, ways: Sequence[Way], grid: int, weakest: MemberPeak | None = None
-) -> dict[str, float]:
-    """The worst value of each requirement's margin on the ways of a cycle; NaN counts as infinitely bad.
-
-    A safety factor of the members is also that of the `weakest` member in the motion, which has its own loads.
-    """
-    poses = np.concatenate([way.evaluate(np.linspace(0.0, way.length, grid + 1), 0)[0] for way in ways])
-    found = {}
-    for requirement in problem.requirements:
-        values = robot.margin(requirement.margin, poses, problem.fvi_bounds, problem.characteristic_length)
-        sense = requirement.bound.sense
-        found[requirement.margin] = sense * float(np.where(np.isnan(values), -np.inf, sense * values).min())
-        if weakest is not None and robot.margins[requirement.margin].of_members:
-            found[requirement.margin] = min(found[requirement.margin], weakest.safety)
-    return found
-
-
-def require_on_cycle(study: Study, timing: Timing) -> None:
-    """Check the study's requirements on its cycle.
-
-    Raises:
-        RequirementFailed: with each one that fails there.
-    """
-    assert study.trajectory is not None
-    problem, cycle = problem_of(study), timing.cycle
-    found = margins_on(problem, cycle.robot, cycle.ways, study.trajectory.grid, timing.weakest)
-    failed = [
-        Failed(f"{r.margin} on the cycle", r.bound, found[r.margin], ())
-        for r in problem.requirements
-        if not r.bound.room(found[r.margin]) >= 0.0
-    ]
-    if failed:
-        raise RequirementFailed(failed)
 
 
 def time_cycle(study: Study, robot: Mechanism) -> Timing:

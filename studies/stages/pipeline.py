@@ -11,7 +11,8 @@ from design import Certificate, Problem, Region, Synthesis, WorstPoses, active_s
 from kinematics import LinkwrightError, Mechanism
 from studies.building import home_of, problem_of, region_of
 from studies.errors import Failed, RequirementFailed
-from studies.stages.cycle_stage import Timing, margins_on, time_cycle
+from studies.stages.cycle_stage import Timing, time_cycle
+from studies.stages.on_cycle import WorstOnCycle, failed_on_cycle, worst_on_cycle
 from studies.stages.proofs import Proof, Question, prove_all
 from studies.stages.timed_stage import Lasting, Progress, stage
 from studies.study_file import Study
@@ -45,7 +46,7 @@ class Outcome:
     solver_status: str
     worst: dict[str, WorstPoses]
     prototype: dict[str, WorstPoses] | None
-    on_cycle: dict[str, float] = field(default_factory=dict)
+    on_cycle: dict[str, WorstOnCycle] = field(default_factory=dict)
     timing: Timing | None = None
     prototype_timing: Timing | None = None
     unasked: dict[str, WorstPoses] = field(default_factory=dict)
@@ -77,7 +78,10 @@ class Outcome:
         """The cycle's figures as plain data; empty without a cycle."""
         if self.timing is None:
             return {}
-        return {**self.timing.figures(), "worst_on_the_path": self.on_cycle}
+        return {
+            **self.timing.figures(),
+            "worst_on_the_path": {name: worst.value for name, worst in self.on_cycle.items()},
+        }
 
     def require_all(self) -> None:
         """Check every requirement, over the region and on the cycle, and that no claim is refuted.
@@ -92,9 +96,7 @@ class Outcome:
             if not bound.room(worst.value) >= 0.0:
                 name, at, part = requirement.margin, tuple(worst.pose.tolist()), self.part(requirement.margin)
                 failed.append(Failed(name, bound, worst.value, at, part=part))
-            on_path = self.on_cycle.get(requirement.margin, bound.value)
-            if not bound.room(on_path) >= 0.0:
-                failed.append(Failed(f"{requirement.margin} on the cycle", bound, on_path, ()))
+        failed += failed_on_cycle(self.problem, self.on_cycle)
         for proof in self.proofs:
             if (pose := proof.certificate.counterexample) is not None:
                 name, bound = proof.certificate.margin, proof.certificate.bound
@@ -157,8 +159,7 @@ def with_cycle(outcome: Outcome, progress: Progress, compare: bool = True) -> Ou
         return outcome
     with stage("cycle", progress):
         timing = time_cycle(study, outcome.robot)
-    grid = study.trajectory.grid
-    on_cycle = margins_on(outcome.problem, outcome.robot, timing.cycle.ways, grid, timing.weakest)
+    on_cycle = worst_on_cycle(outcome.problem, timing, study.trajectory.grid)
     if weakness := timing.weakness():
         progress(Lasting(weakness))
     if outcome.prototype is not None and compare:

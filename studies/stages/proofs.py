@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from design import Budget, Certificate, Problem, Region, WorstPoses, best_bound, certify, replay, worst_poses
@@ -15,6 +15,7 @@ from studies.stages.bound_option import bound_option
 from studies.stages.timed_stage import Progress
 from studies.study_file import Study
 
+_POSITIVE = 1e-12  # in a margin's unit: a bound above 0 that every usable robot keeps
 _FEW = 4  # boxes; enough to run every compiled function of a proof once
 
 
@@ -139,7 +140,11 @@ class Question:
 
     def compile(self, claim: Claim) -> None:
         """Bound a few boxes, so that the functions of a proof are compiled, or read from the disk."""
-        certify(self.robot, self.region, claim.margin, **self.bound_of(claim), most_boxes=_FEW, **self.measure)
+        bound = self.required(claim)
+        if claim.required is None and bound.value == 0.0:
+            bound = replace(bound, value=_POSITIVE)  # as those that the search for the best bound tries
+        asked: dict[str, Any] = {bound.word: bound.value}
+        certify(self.robot, self.region, claim.margin, **asked, most_boxes=_FEW, **self.measure)
 
     def replay(self, certificate: Certificate, claim: Claim) -> int:
         """The number of boxes that a certificate's replay bounds. Another claim's certificate raises an error."""

@@ -110,8 +110,8 @@ class RequirementTable(StudyTable):
 
     margin: Annotated[str, Key("one of")]
     """The margin."""
-    at_least: Annotated[float | None, Key("a finite number; for the margin reach, 0 or more")] = None
-    """The lowest value that is allowed, at every pose of the region and on the cycle."""
+    at_least: Annotated[float | None, Key("a finite number")] = None
+    """The lowest value that is allowed, at every pose of the region and on the cycle. For reach it is 0 or more."""
     at_most: Annotated[float | None, Key("a finite number")] = None
     """The highest value that is allowed, in place of `at_least`, of a margin that is better smaller."""
 

@@ -12,6 +12,7 @@ import pytest
 from design import Box, Cylinder, InvalidRegion, Region, best_bound, certify, worst_poses
 from kinematics import (
     MECHANISMS,
+    Delta,
     GoughStewart,
     Heli4,
     InvalidValue,
@@ -216,7 +217,7 @@ def test_the_best_bound_is_within_its_tolerance_of_the_sampled_worst() -> None:
 
 def test_a_best_bound_beyond_the_allowance_is_the_closest_that_is_not() -> None:
     """Of the tolerance doubled again and again, the smallest that its share of the boxes proves."""
-    tolerance, most_boxes = 2e-3, 144_000
+    tolerance, most_boxes = 2e-3, 112_000
     found = best_bound(Heli4(), CYLINDER, "J_q", tolerance, most_boxes=most_boxes)
     assert found is not None
     doublings = math.log2((found.sampled - found.certificate.bound.value) / tolerance)
@@ -224,6 +225,20 @@ def test_a_best_bound_beyond_the_allowance_is_the_closest_that_is_not() -> None:
     assert round(doublings) >= 1
     nearer = found.sampled - tolerance * 2.0 ** (round(doublings) - 1)
     assert certify(Heli4(), CYLINDER, "J_q", at_least=nearer, most_boxes=most_boxes // 4).status == "undecided"
+
+
+def test_a_strength_that_is_hard_to_prove_has_a_best_bound_above_0_within_few_boxes() -> None:
+    """The widest distance is tried before those that cost more boxes than are allowed."""
+    region = Box(x=(-0.15, 0.15), y=(-0.15, 0.15), z=(-0.8, -0.7))
+    worst = worst_poses(Delta(), region, "strength", about=10_000).value
+    found = best_bound(Delta(), region, "strength", 0.01 * worst, most_boxes=24_000)
+    assert found is not None
+    assert found.certificate.bound.value == pytest.approx(0.36 * worst, rel=0.01)
+
+
+def test_that_a_strength_is_not_negative_is_decided() -> None:
+    region = Box(x=(-0.15, 0.15), y=(-0.15, 0.15), z=(-0.8, -0.7))
+    assert certify(Delta(), region, "strength", at_least=0.0, most_boxes=10_000).status == "proved"
 
 
 def test_progress_counts_the_boxes_up_to_the_answer() -> None:

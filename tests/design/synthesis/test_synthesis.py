@@ -286,7 +286,7 @@ def test_when_time_runs_out_the_best_geometry_seen_is_told_and_none_is_returned(
     best = caught.value.best
     assert best is not None
     assert best.objective == pytest.approx(best.worst["fvi"].value)
-    assert "best found" in str(caught.value)
+    assert "the best geometry found: " in str(caught.value)
     for wrong in (0.0, -1.0, math.nan, "1"):
         with pytest.raises(InvalidValue, match="seconds"):
             synthesise(asked, REGION, seconds=wrong)  # type: ignore[arg-type]
@@ -405,3 +405,18 @@ def test_a_geometry_that_its_mechanism_refuses_is_no_optimum_and_named() -> None
         match=r"none of 200 random choices within the bounds is a possible geometry; the last: .*outer_rail_z",
     ):
         synthesise(asked, region, starts=1, about=5_000)
+
+
+@pytest.mark.parametrize(("least", "misses"), [(0.1, False), (0.999, True)])
+def test_the_best_geometry_is_told_with_each_requirement_it_misses_or_that_it_keeps_all(
+    least: float, misses: bool
+) -> None:
+    asked = problem(("base_radius", 0.2, 0.45), requirements=(Requirement("internal_determinant", least),))
+    with pytest.raises(SynthesisFailed) as caught:
+        synthesise(asked, REGION, starts=1, about=ABOUT, max_rounds=1, tolerance=1e-15)
+    lines = str(caught.value).splitlines()
+    assert any(line.startswith("  base_radius = 0.") for line in lines)
+    assert ("  it keeps every requirement, but the solver did not confirm it as an optimum" in lines) != misses
+    told = [line for line in lines if line.startswith("  it misses internal_determinant: found 0.")]
+    assert len(told) == misses
+    assert all(" at pose (" in line and line.endswith("; expected at least 0.999") for line in told)

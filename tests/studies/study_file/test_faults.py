@@ -285,9 +285,37 @@ def test_the_second_row_of_an_array_of_tables_is_told_by_its_line(write: Write, 
 
 
 def test_a_fault_in_an_inline_array_of_tables_has_its_own_line(write: Write, minimal_text: str) -> None:
-    rows = 'requirement = [\n  { margin = "J_q", at_least = 0 },\n  { margin = "J_q", at_least = "0" },\n]\n'
+    rows = 'requirement = [\n  { margin = "J_q", at_least = 0 },\n  { margin = "J_x", at_least = "0" },\n]\n'
     error = refused(write(rows + minimal_text))
     assert (error.key, error.line) == ("requirement.at_least", 3)
+
+
+def test_a_second_requirement_on_a_margin_is_refused_and_both_lines_are_named(write: Write, minimal_text: str) -> None:
+    row = '[[requirement]]\nmargin = "J_q"\nat_least = 0\n'
+    error = refused(write(minimal_text + row + row))
+    assert (error.key, error.line) == ("requirement.margin", 13)
+    assert str(error).endswith(
+        "found a second requirement on J_q; expected one requirement a margin; line 10 has the first one on J_q"
+    )
+
+
+@pytest.mark.parametrize(("margin", "told"), [("J_q", False), ("reach", True)])
+def test_only_a_bound_of_reach_is_told_what_reach_expects(
+    write: Write, minimal_text: str, margin: str, told: bool
+) -> None:
+    row = f'[[requirement]]\nmargin = "{margin}"\n'
+    for bound in ("", "at_least = nan\n", "at_least = -inf\n"):
+        error = refused(write(minimal_text + row + bound))
+        assert error.key == "requirement.at_least"
+        assert error.expected.startswith("a finite number")
+        assert ("reach" in error.expected) <= told
+    if told:
+        assert "for the margin reach, 0 or more" in str(refused(write(minimal_text + row + "at_least = -1\n")))
+
+
+def test_an_upper_bound_below_every_value_of_its_margin_is_refused(write: Write, minimal_text: str) -> None:
+    error = refused(write(minimal_text + '[[requirement]]\nmargin = "mass"\nat_most = -1\n'))
+    assert str(error).endswith("requirement.at_most: found -1; expected 0 or more, as mass is never below it")
 
 
 def test_a_study_error_survives_pickling(write: Write) -> None:

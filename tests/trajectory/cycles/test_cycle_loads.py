@@ -89,11 +89,22 @@ def test_each_members_peaks_are_those_of_dense_samples(cycle):
             largest = max(getattr(part, field)[:, k].max() for part in samples)
             assert getattr(peak, field) == pytest.approx(largest, rel=1e-3, abs=1e-9)
         tension = np.concatenate([part.tension[:, k] for part in samples])
-        assert abs(peak.tension) == pytest.approx(np.abs(tension).max(), rel=1e-3)
+        assert peak.tension == pytest.approx(max(tension.max(), 0.0), rel=1e-3, abs=1e-9)
+        assert peak.compression == pytest.approx(max(-tension.min(), 0.0), rel=1e-3, abs=1e-9)
         least = min(part.safety[:, k].min() for part in samples)
         assert peak.safety == pytest.approx(least, rel=1e-3)
         assert peak.safety <= least * (1 + 1e-6)
         assert 0.0 <= min(peak.tension_at, peak.safety_at) <= max(peak.tension_at, peak.safety_at) <= starts[-1]
+
+
+def test_the_smallest_factor_of_a_member_has_its_pose_and_by_what_it_fails(cycle):
+    for peak in member_peaks(cycle):
+        assert peak.fails_by in ("buckling", "yield") if peak.member.startswith("rod") else peak.fails_by == "yield"
+        starts = np.cumsum([0.0, *(piece.duration for piece in cycle.pieces)])
+        which = int(np.searchsorted(starts[1:-1], peak.safety_at, side="right"))
+        piece, inside = cycle.pieces[which], peak.safety_at - starts[which]
+        motion = piece.motion.at(np.clip(inside, 0.0, piece.duration))
+        np.testing.assert_allclose(peak.safety_pose, motion.pose, atol=1e-9)
 
 
 def test_a_heavier_way_loads_every_rod_more(cycle):
