@@ -63,7 +63,7 @@ class WorstDirection(Size):
 
 
 def _length(vector: ca.SX) -> ca.SX:
-    return ca.sqrt(ca.sumsqr(vector) + _TINY)
+    return ca.sqrt(ca.sumsqr(vector) + _TINY) if vector.nnz() else ca.SX(0)
 
 
 class Slack(NamedTuple):

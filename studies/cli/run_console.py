@@ -6,7 +6,19 @@ from typing import Any
 
 from studies.cli.console import files_data, print_files, print_json, print_table
 from studies.cli.proof_console import proof_data
-from studies.report import FRAME, MEMBERS, PROOFS, frame_rows, margin_columns, margin_rows, member_rows, proof_rows
+from studies.report import (
+    FRAME,
+    LOADS,
+    MEMBERS,
+    PROOFS,
+    frame_rows,
+    load_rows,
+    loads_title,
+    margin_columns,
+    margin_rows,
+    member_rows,
+    proof_rows,
+)
 from studies.results import Written
 from studies.stages import Outcome, Timing, became_worse
 from trajectory.drive_files import FORMATS
@@ -23,6 +35,8 @@ def print_outcome(outcome: Outcome, written: Written, as_json: bool) -> None:
         print_table(
             f"Worse than the {outcome.before}, and not asked about", ("",), [(str(change),) for change in worse]
         )
+    if outcome.loads:
+        print_table(loads_title(outcome), LOADS, load_rows(outcome))
     if outcome.proofs:
         print_table("Proofs over the region", PROOFS, proof_rows(outcome.proofs))
     changed = outcome.problem.robot.geometry.as_dict()
@@ -110,6 +124,7 @@ def _outcome_data(outcome: Outcome, written: Written) -> dict[str, Any]:
         "prototype": {m: w.value for m, w in outcome.prototype.items()} if outcome.prototype else None,
         "unasked": {m: {"value": w.value, "pose": w.pose.tolist()} for m, w in outcome.unasked.items()},
         "unasked_before": {m: w.value for m, w in outcome.unasked_before.items()} if outcome.unasked_before else None,
+        "loads_from_rest": [load.as_dict() for load in outcome.loads],
         "became_worse": [str(change) for change in became_worse(outcome)],
         "active": outcome.active,
         "region": repr(outcome.region),

@@ -15,9 +15,12 @@ from studies.report import plots
 from studies.report.machine_rows import machine_rows
 from studies.report.tables import (
     FRAME,
+    LOADS,
     MEMBERS,
     PROOFS,
     frame_rows,
+    load_rows,
+    loads_title,
     margin_columns,
     margin_rows,
     member_rows,
@@ -69,6 +72,9 @@ def html_report(outcome: Outcome, pictures: Pictures, command: str) -> str:
         pictures=[(title, _embedded(png)) for title, png in pictures],
         timings=_timing_rows(outcome),
         peaks=_peak_rows(outcome.timing) if outcome.timing else [],
+        load_columns=LOADS,
+        loads=load_rows(outcome),
+        loads_title=loads_title(outcome),
         member_columns=MEMBERS,
         members=member_rows(outcome.timing) if outcome.timing else [],
         weakness=outcome.timing.weakness() if outcome.timing else "",

@@ -22,6 +22,16 @@ MEMBERS = (
     "smallest at [s]",
     "fails first by",
 )
+LOADS = (
+    "member",
+    "largest tension [N]",
+    "largest compression [N]",
+    "bending [N m]",
+    "torsion [N m]",
+    "joint force [N]",
+)
+_ROUNDING = 1e-12  # of the largest number beside it
+_HUGE = 1e6  # a larger number, such as the factor of a member that bears nothing, says nothing about rounding
 PROOFS = ("claim at every pose", "answer", "boxes", "time [s]", "worst sampled", "room to the bound", "at pose")
 
 
@@ -54,20 +64,45 @@ def _figure(value: float) -> str:
     return f"{value:.6f}" if 1e-3 <= abs(value) < 1e4 or not value else f"{value:.6g}"
 
 
+def load_rows(outcome: Outcome) -> list[tuple[str, ...]]:
+    """What each member bears at most over the region, from rest, in the columns `LOADS`."""
+    numbers = _shown([list(load.as_dict().values())[1:] for load in outcome.loads])
+    return [(load.member, *row) for load, row in zip(outcome.loads, numbers, strict=True)]
+
+
+def loads_title(outcome: Outcome) -> str:
+    """What the loads of the members are for."""
+    load = outcome.robot.load
+    return (
+        f"Members over the region, {load.payload:g} kg from rest at {load.acceleration:g} m/s^2 in the worst direction"
+    )
+
+
 def frame_rows(timing: Timing) -> list[tuple[str, ...]]:
     """What the machine exerts on its frame over the cycle, in the columns `FRAME`."""
     return [
-        (f"{name} [{FRAME_UNITS[name]}]", *(f"{v:.6g}" for v in (p.peak, p.time, p.rms, *p.axes)))
+        (
+            f"{name} [{FRAME_UNITS[name]}]",
+            *(f"{v:.6g}" for v in (p.peak, p.time, p.rms)),
+            *(f"{v if abs(v) > _ROUNDING * p.peak else 0.0:.6g}" for v in p.axes),
+        )
         for name, p in timing.frame.items()
     ]
 
 
 def member_rows(timing: Timing) -> list[tuple[str, ...]]:
     """What each member bears over the cycle, in the columns `MEMBERS`, the nearest to its limit first."""
+    peaks = sorted(timing.members, key=lambda peak: peak.safety)
     return [
-        ("BREAKS" if peak.breaks else "", peak.member, *(f"{value:.4g}" for value in peak.numbers()), peak.fails_by)
-        for peak in sorted(timing.members, key=lambda peak: peak.safety)
+        ("BREAKS" if peak.breaks else "", peak.member, *row, peak.fails_by)
+        for peak, row in zip(peaks, _shown([peak.numbers() for peak in peaks]), strict=True)
     ]
+
+
+def _shown(rows: Sequence[Sequence[float]]) -> list[list[str]]:
+    """Four digits of each number, and 0 for what is only rounding beside the largest of its column."""
+    largest = [_ROUNDING * min(max(map(abs, column)), _HUGE) for column in zip(*rows, strict=True)]
+    return [[f"{v if abs(v) > least else 0.0:.4g}" for v, least in zip(row, largest, strict=True)] for row in rows]
 
 
 def proof_rows(proofs: Sequence[Proof]) -> list[tuple[str, ...]]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from design import WorstPoses, worst_poses
 from kinematics import Mechanism, swept_box
+from studies.stages.loads_over_region import loads_over
 from studies.stages.pipeline import Outcome
 from studies.stages.timed_stage import Progress, stage
 
@@ -43,7 +44,7 @@ class Change:
 
 
 def with_unasked(outcome: Outcome, progress: Progress) -> Outcome:
-    """The outcome with the worst values of the margins of its bodies that the study did not ask about."""
+    """The outcome with the margins of its bodies that the study did not ask about, and the loads of its members."""
     names = [n for n, margin in outcome.robot.margins.items() if margin.records and n not in outcome.worst]
     own = outcome.problem.robot
     with stage("figures of the bodies", progress):
@@ -51,7 +52,8 @@ def with_unasked(outcome: Outcome, progress: Progress) -> Outcome:
         before = None
         if outcome.prototype is not None:
             before = {name: _worst(outcome, own, name) for name in names}
-    return replace(outcome, unasked=after, unasked_before=before)
+        loads = loads_over(outcome.robot, outcome.region)
+    return replace(outcome, unasked=after, unasked_before=before, loads=loads)
 
 
 def became_worse(outcome: Outcome) -> list[Change]:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 import math
 
+import numpy as np
 import pytest
 
-from kinematics import Heli4
+from design import Box
+from kinematics import Heli4, member_forces
 from studies.stages.unasked import Change
 from tests.studies.command_line import SmallRun
 
@@ -30,6 +32,25 @@ def test_the_masses_told_are_those_of_both_geometries(small_run: SmallRun) -> No
     found = Heli4(Heli4.Geometry(**data["geometry"]))
     for robot, told in ((Heli4(), data["unasked_before"]["mass"]), (found, data["unasked"]["mass"]["value"])):
         assert float(robot.margin("mass", robot.home)) == pytest.approx(told, rel=1e-12)
+
+
+def test_no_member_bears_more_in_a_random_motion_from_rest_than_is_told(small_run: SmallRun) -> None:
+    """Up to what a grid misses between its poses."""
+    data = json.loads(small_run[1].stdout)
+    region = Box(x=(-0.2, 0.2), y=(-0.2, 0.2), z=(-0.76, -0.7), theta=(-math.pi / 2, math.pi / 2))
+    robot, rng, count = Heli4(Heli4.Geometry(**data["geometry"])), np.random.default_rng(4), 5000
+    poses = region.random(robot.pose_names, count, rng)
+    directions = rng.normal(size=(count, 3))
+    acceleration = np.zeros((count, 4))
+    acceleration[:, :3] = robot.load.acceleration * directions / np.linalg.norm(directions, axis=1)[:, None]
+    found = member_forces(robot, robot.load.payload, poses, 0 * poses, acceleration)
+    told = {load["member"]: load for load in data["loads_from_rest"]}
+    assert tuple(told) == found.names
+    for k, name in enumerate(found.names):
+        along = max(told[name]["tension"], told[name]["compression"])
+        assert 0.7 * along < np.abs(found.tension[:, k]).max() < 1.02 * along
+        assert found.bending[:, k].max() < 1.02 * told[name]["bending"]
+        assert found.joint_force[:, k].max() < 1.02 * told[name]["joint_force"]
 
 
 def test_a_change_is_worse_in_its_own_sense_only() -> None:
