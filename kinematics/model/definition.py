@@ -24,6 +24,7 @@ from kinematics.machine import (
     Reference,
     Tree,
 )
+from kinematics.mathematics import rotation_symbolic
 from kinematics.model.abstract_margin import Margin
 from kinematics.model.indices import FviBounds
 
@@ -170,6 +171,15 @@ class Definition(ABC):
     ) -> ca.SX | None:
         """(m,) the diagonal of J_q at a pose, where it is simpler than what the closure's derivative gives there."""
         return None
+
+    @classmethod
+    def tool_frame(cls, pose: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """The tool point (3,) and the axes of the tool (3, 3), but for a turn about its own z axis."""
+        names = cls.pose_names
+        point = ca.vertcat(*(pose[names.index(name)] if name in names else 0 for name in ("x", "y", "z")))
+        if "roll" not in names:
+            return point, ca.SX.eye(3)
+        return point, rotation_symbolic(pose[[names.index(name) for name in ("roll", "pitch", "yaw")]])
 
     @staticmethod
     def pose_rate_map(pose: ca.SX) -> ca.SX:

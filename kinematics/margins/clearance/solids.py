@@ -11,14 +11,13 @@ import casadi as ca
 import numpy as np
 
 from kinematics.errors import InvalidValue
-from kinematics.machine import Member, Obstacle, PayloadHull, Plate, Tube
-from kinematics.mathematics import Convex, rotation_symbolic, signed_distance
+from kinematics.machine import Member, Obstacle, PayloadHull, Plate
+from kinematics.mathematics import Convex, signed_distance
 from kinematics.model import Mechanism, Model
 
 _BASE = "base"  # the joint of all that does not move
 _HULL = "payload"
 _ROUNDING = 1e-12  # of the robot's size
-_SIDES = 8  # of the polygon around a flat payload
 
 
 class Solid(NamedTuple):
@@ -177,16 +176,7 @@ def _hull_member(robot: Mechanism, hull: PayloadHull) -> Member:
     """The payload as a capsule, or as a plate if it is flat."""
     if robot.tool_member not in (names := [m.name for m in _members(robot)]):
         raise InvalidValue(f"{type(robot).__name__} tool_member", robot.tool_member, f"one of {', '.join(names)}")
-    point, axes = _tool_frame(robot)
-    half = (hull.high - hull.low) / 2
-    if half >= hull.radius:
-        low, high = (point + axes[:, 2] * z for z in (hull.low + hull.radius, hull.high - hull.radius))
-        shape: Tube | Plate = Tube(low, high, ca.SX(hull.radius), ca.SX(hull.radius))
-    else:
-        angles = (np.arange(_SIDES) + 0.5) * 2 * np.pi / _SIDES
-        around = (hull.radius - half) / np.cos(np.pi / _SIDES) * np.array([np.cos(angles), np.sin(angles)])
-        level = np.full((1, _SIDES), hull.low + half)
-        shape = Plate(ca.repmat(point, 1, _SIDES) + axes @ ca.DM(np.vstack([around, level])), ca.SX(2 * half))
+    shape = hull.shape(*robot.tool_frame(robot.model().pose))
     return Member(_HULL, (_HULL,), "", (shape,))
 
 
@@ -199,15 +189,6 @@ def _carries(robot: Mechanism, member: Member) -> bool:
 def _members(robot: Mechanism) -> list[Member]:
     model = robot.model()
     return robot.members(model.pose, model.joints, model.g)
-
-
-def _tool_frame(robot: Mechanism) -> tuple[ca.SX, ca.SX]:
-    """The tool point (3,), and the axes of the tool (3, 3); a turn about its z axis is left out: the hull is round."""
-    pose, names = robot.model().pose, robot.pose_names
-    point = ca.vertcat(*(pose[names.index(name)] if name in names else 0 for name in ("x", "y", "z")))
-    if "roll" not in names:
-        return point, ca.SX.eye(3)
-    return point, rotation_symbolic(pose[[names.index(name) for name in ("roll", "pitch", "yaw")]])
 
 
 def _walls(robot: Mechanism) -> list[tuple[str, tuple[tuple[int, float, float], ...]]]:
