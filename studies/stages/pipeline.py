@@ -156,12 +156,24 @@ def with_cycle(outcome: Outcome, progress: Progress, compare: bool = True) -> Ou
 
     Args:
         compare: also time the cycle on the study's own geometry, if the robot has another.
+
+    Raises:
+        RequirementFailed: the cycle was refused, and requirements fail over the region too.
+        LinkwrightError: the cycle was refused.
     """
     study, prototype = outcome.study, None
     if study.trajectory is None:
         return outcome
-    with stage("cycle", progress):
-        timing = time_cycle(study, outcome.robot)
+    try:
+        with stage("cycle", progress):
+            timing = time_cycle(study, outcome.robot)
+    except LinkwrightError as error:
+        try:
+            outcome.require_all()
+        except RequirementFailed:  # it comes first: the cycle may have failed for the same reason
+            progress(Lasting(f"the cycle was refused: {error}"))
+            raise
+        raise
     on_cycle = worst_on_cycle(outcome.problem, timing, study.trajectory.grid)
     if weakness := timing.weakness():
         progress(Lasting(weakness))

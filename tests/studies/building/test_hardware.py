@@ -174,6 +174,15 @@ def test_a_required_room_that_the_ranges_do_not_leave_stops_a_run(tmp_path: Path
     assert not (tmp_path / "out").exists()
 
 
+def test_where_the_cycle_is_refused_a_requirement_that_fails_over_the_region_is_told_first(tmp_path: Path) -> None:
+    wanted = '[[requirement]]\nmargin = "clearance"\nat_least = 0.001\n[surroundings]\nfloor = -0.7\n'
+    study_of(tmp_path, GIVEN + wanted)
+    ended = linkwright("run", tmp_path, "--out", tmp_path / "out")
+    assert ended.returncode == 1
+    assert re.search(r"the cycle was refused: .* of rod \d [ab] and the floor", ended.stderr)
+    assert re.search(r"requirement\.at_least: clearance of rod \d [ab] and the floor: found -0\.", ended.stderr)
+
+
 @pytest.mark.parametrize("name", ["heli4", "gough_stewart"])
 def test_a_committed_answer_proves_the_room_that_its_ranges_leave(name: str) -> None:
     """That each one stands is `linkwright check`'s to say."""
