@@ -111,10 +111,11 @@ def chosen(seen: Array, fixed: int) -> Array:
     Args:
         fixed: the number of pairs with a fixed direction. They come before those whose direction turns.
     """
-    count = len(seen)
-    directions = _fixed_directions(seen[:, : _SEEN_FIXED * fixed].reshape(count, fixed, _SEEN_FIXED))
-    turning = _turning_directions(seen[:, _SEEN_FIXED * fixed :].reshape(count, -1, _SEEN_TURNING))
-    return np.hstack([directions.reshape(count, -1), turning.reshape(count, -1)])
+    count, first = len(seen), _SEEN_FIXED * fixed
+    turning = (seen.shape[1] - first) // _SEEN_TURNING
+    directions = _fixed_directions(seen[:, :first].reshape(count, fixed, _SEEN_FIXED))
+    turned = _turning_directions(seen[:, first:].reshape(count, turning, _SEEN_TURNING))
+    return np.hstack([directions.reshape(count, fixed * 3), turned.reshape(count, turning * Turning.numbers)])
 
 
 def _fixed_directions(ways: Array) -> Array:

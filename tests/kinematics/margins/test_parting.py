@@ -10,6 +10,7 @@ import pytest
 
 from design import Box, Cylinder, certify, replay
 from kinematics import ClaimSymbols, Heli4, Mechanism, Redundant3T1R, Surroundings
+from kinematics.margins.clearance.parting import Turning, chosen
 from trajectory import AdeptCycle, PathRefused, certify_path
 
 
@@ -78,3 +79,10 @@ def test_a_cycle_keeps_its_clearance_and_a_refused_one_names_the_two_bodies() ->
 def test_nine_tenths_of_heli4s_clearance_are_proved_over_its_whole_region() -> None:
     region = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-pi, pi))
     assert certify(Heli4(), region, "clearance", at_least=0.9 * 0.003288, most_boxes=200_000).status == "proved"
+
+
+def test_no_boxes_need_no_directions() -> None:
+    """A proof may ask for the bounds of an empty list of boxes."""
+    seen = np.zeros((1, 2 * 3 + 16))
+    assert chosen(seen, 2).shape == (1, 2 * 3 + Turning.numbers)
+    assert chosen(seen[:0], 2).shape == (0, 2 * 3 + Turning.numbers)
