@@ -76,7 +76,6 @@ from kinematics.margins import (
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
 from kinematics.model import (
-    RESERVED_NAMES,
     Bound,
     ClaimSymbols,
     FviBounds,
@@ -87,6 +86,7 @@ from kinematics.model import (
     ToShow,
     by_name,
     continued,
+    free_name,
     sides,
     taken_names,
 )
@@ -110,7 +110,6 @@ __all__ = [
     "MATERIALS",
     "MECHANISMS",
     "PASSIVE_JOINT",
-    "RESERVED_NAMES",
     "ROTATIONAL_STIFFNESS",
     "STANDARD",
     "UNIFORM",
@@ -176,6 +175,7 @@ __all__ = [
     "evaluate",
     "finite",
     "frame_reaction",
+    "free_name",
     "friction",
     "from_actuators",
     "hull_depth",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import reduce
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -32,6 +32,12 @@ class LoadsFromRest(NamedTuple):
     bending: Array
     torsion: Array
     joint_force: Array
+
+    def as_data(self) -> list[dict[str, Any]]:
+        """A table of plain data for each member, of one pose."""
+        names = ("member", *self._fields[1:])
+        rows = zip(self.names, *(part.tolist() for part in self[1:]), strict=True)
+        return [dict(zip(names, row, strict=True)) for row in rows]
 
 
 def loads_from_rest(robot: Mechanism, pose: Array) -> LoadsFromRest:

@@ -19,7 +19,7 @@ import numba
 import numpy as np
 
 from kinematics.errors import InvalidValue
-from kinematics.evaluation.interval_trigonometry import LIMIT, arctangent, cosine, far_cosine, far_sine, sine
+from kinematics.evaluation.interval_trigonometry import LIMIT, QUARTER, arctangent, far_cosine, shifted_cosine
 from kinematics.evaluation.program import Op
 from kinematics.evaluation.threads import over_spans
 
@@ -142,18 +142,13 @@ def _apply(code, lo, hi, x, y, z):  # type: ignore[no-untyped-def]
     elif code == TWICE:
         for i in range(width):
             lo[z, i], hi[z, i] = min(2.0 * lo[x, i], _MAX), max(2.0 * hi[x, i], -_MAX)  # exact, but for overflow
-    elif code == COS:
+    elif code in (COS, SIN):
+        shift = 0.0 if code == COS else QUARTER
         for i in range(width):
-            lo[z, i], hi[z, i] = cosine(lo[x, i], hi[x, i])
-        for i in range(width):
-            if max(-lo[x, i], hi[x, i]) > LIMIT:
-                lo[z, i], hi[z, i] = far_cosine(lo[x, i], hi[x, i])
-    elif code == SIN:
-        for i in range(width):
-            lo[z, i], hi[z, i] = sine(lo[x, i], hi[x, i])
+            lo[z, i], hi[z, i] = shifted_cosine(lo[x, i], hi[x, i], shift)
         for i in range(width):
             if max(-lo[x, i], hi[x, i]) > LIMIT:
-                lo[z, i], hi[z, i] = far_sine(lo[x, i], hi[x, i])
+                lo[z, i], hi[z, i] = far_cosine(lo[x, i], hi[x, i], shift)
     elif code == ATAN2:
         for i in range(width):
             lo[z, i], hi[z, i] = arctangent(lo[x, i], hi[x, i], lo[y, i], hi[y, i])

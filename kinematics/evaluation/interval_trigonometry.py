@@ -1,4 +1,4 @@
-"""Cosine, sine and arctangent of intervals, without branches, so that a loop over them becomes vector code."""
+"""Cosine, shifted for the sine, and arctangent of intervals, without branches: a loop over them becomes vector code."""
 
 from __future__ import annotations
 
@@ -10,27 +10,30 @@ import numpy as np
 from kinematics.evaluation import vector_sine
 from kinematics.evaluation.vector_arctangent import angle
 
-_LIBRARY = 2.0**-50  # what sine, cosine and arctangent may be off by, relative to 1
+_ERROR = 2.0**-50  # what sine, cosine and arctangent may be off by, relative to 1
 _OPTIONS: dict[str, Any] = {"nogil": True, "cache": True, "error_model": "numpy", "inline": "always"}
 _cosine_at = vector_sine.sine
 LIMIT = vector_sine.LIMIT - 2.0  # rad; a quarter of a turn less
-_QUARTER = 0.5 * np.pi
+QUARTER = 0.5 * np.pi
 _FAR = 1e9
 
 
 @numba.njit(**_OPTIONS)
-def cosine(a, b):  # type: ignore[no-untyped-def]
-    """Bounds of the cosine on [a, b], which must lie within LIMIT of 0."""
-    low, high = _bounds(a, b, _cosine_at(a, 1.0), _cosine_at(b, 1.0))
-    return (1.0 if (a == 0.0) & (b == 0.0) else low), high
+def shifted_cosine(a, b, shift):  # type: ignore[no-untyped-def]
+    """Bounds of cos(x - shift) on [a, b] within LIMIT of 0; `shift` is 0, or QUARTER for a sine. Exact at x = 0."""
+    p, q = a - shift, b - shift
+    low, high = _bounds(p, q, _cosine_at(p, 1.0), _cosine_at(q, 1.0))
+    zero, exact = (a == 0.0) & (b == 0.0), 1.0 if shift == 0.0 else 0.0
+    return (exact if zero else low), (exact if zero else high)
 
 
 @numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
-def far_cosine(a, b):  # type: ignore[no-untyped-def]
-    """As `cosine`, for any box, by the C library."""
-    if _FAR < max(abs(a), abs(b)) < np.inf:
+def far_cosine(a, b, shift):  # type: ignore[no-untyped-def]
+    """As `shifted_cosine`, for any box, by the C library."""
+    p, q = a - shift, b - shift
+    if _FAR < max(abs(p), abs(q)) < np.inf:
         return -1.0, 1.0
-    return _bounds(a, b, np.cos(a), np.cos(b))
+    return _bounds(p, q, np.cos(p), np.cos(q))
 
 
 @numba.njit(**_OPTIONS)
@@ -41,7 +44,7 @@ def _bounds(a, b, p, q):  # type: ignore[no-untyped-def]
     angle.
     """
     largest = max(abs(a), abs(b))
-    slack = _LIBRARY * (1.0 + largest)
+    slack = _ERROR * (1.0 + largest)
     first, last = np.ceil((a - slack) / np.pi - 1e-12), np.floor((b + slack) / np.pi + 1e-12)
     even = np.floor(0.5 * first) == 0.5 * first
     several, one = first < last, first == last
@@ -50,21 +53,6 @@ def _bounds(a, b, p, q):  # type: ignore[no-untyped-def]
     low = -1.0 if wide | (one & (not even)) else max(min(p, q) - 2.0 * slack, -1.0)
     defined = largest < np.inf
     return (low if defined else -np.inf), (high if defined else np.inf)
-
-
-@numba.njit(**_OPTIONS)
-def sine(a, b):  # type: ignore[no-untyped-def]
-    """As a cosine that is shifted, but for the exact value at 0."""
-    p, q = a - _QUARTER, b - _QUARTER
-    low, high = _bounds(p, q, _cosine_at(p, 1.0), _cosine_at(q, 1.0))
-    zero = (a == 0.0) & (b == 0.0)
-    return (0.0 if zero else low), (0.0 if zero else high)
-
-
-@numba.njit(nogil=True, cache=True, error_model="numpy", inline="never")
-def far_sine(a, b):  # type: ignore[no-untyped-def]
-    """As `sine`, for any box."""
-    return far_cosine(a - _QUARTER, b - _QUARTER)
 
 
 @numba.njit(**_OPTIONS)
@@ -78,4 +66,4 @@ def arctangent(a, b, c, d):  # type: ignore[no-untyped-def]
     defined = (total - total == 0.0) & ((c > 0.0) | (a > 0.0) | (b < 0.0))
     x, u = (d if a > 0.0 else c), (d if b < 0.0 else c)
     low, high = angle(a if x > 0.0 else b, x), angle(b if u > 0.0 else a, u)
-    return (low - _LIBRARY * 4.0 if defined else -np.inf), (high + _LIBRARY * 4.0 if defined else np.inf)
+    return (low - _ERROR * 4.0 if defined else -np.inf), (high + _ERROR * 4.0 if defined else np.inf)

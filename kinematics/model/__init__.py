@@ -15,13 +15,12 @@ from kinematics.model.indices import (
 )
 from kinematics.model.joint_redundancy import BestFit, EncoderCheck, check_encoders, least_squares
 from kinematics.model.mechanism import Mechanism
-from kinematics.model.obstacle_names import RESERVED_NAMES, taken_names
+from kinematics.model.obstacle_names import free_name, taken_names
 from kinematics.model.programs import Build, Write
 from kinematics.model.symbolic_model import Model
 from kinematics.model.working_mode import Mode
 
 __all__ = [
-    "RESERVED_NAMES",
     "BestFit",
     "Bound",
     "Build",
@@ -38,6 +37,7 @@ __all__ = [
     "by_name",
     "check_encoders",
     "continued",
+    "free_name",
     "fvi",
     "fvi_components",
     "homogeneous",

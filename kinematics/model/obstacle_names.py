@@ -13,7 +13,7 @@ from kinematics.machine import Surroundings
 if TYPE_CHECKING:
     from kinematics.model.mechanism import Mechanism
 
-RESERVED_NAMES = ("base", "floor", "payload", "the floor")
+_RESERVED = ("base", "floor", "payload", "the floor")
 
 
 @lru_cache(maxsize=64)
@@ -21,7 +21,12 @@ def taken_names(kind: type[Mechanism]) -> frozenset[str]:
     """The names of a mechanism's members and of the parts of its base, and the reserved ones."""
     pose, joints = ca.SX.sym("pose", len(kind.pose_names)), ca.SX.sym("joints", len(kind.joint_names))
     members = kind().all_members(pose, joints, kind.Geometry.symbols()[1])
-    return frozenset([*RESERVED_NAMES, *(member.name for member in members)])
+    return frozenset([*_RESERVED, *(member.name for member in members)])
+
+
+def free_name(kind: type[Mechanism]) -> str:
+    """What a name must be, in words."""
+    return f"a name that is no member of {kind.__name__}, and none of {', '.join(_RESERVED)}"
 
 
 def require_free_names(kind: type[Mechanism], surroundings: Surroundings) -> None:
@@ -35,5 +40,5 @@ def require_free_names(kind: type[Mechanism], surroundings: Surroundings) -> Non
     taken = taken_names(kind)
     for obstacle in surroundings.obstacles:
         if obstacle.name in taken:
-            expected = f"a name that is no member of {kind.__name__}, and none of {', '.join(RESERVED_NAMES)}"
-            raise InvalidField("Surroundings", f"obstacles, name of {obstacle.name!r}", obstacle.name, expected)
+            name = f"obstacles, name of {obstacle.name!r}"
+            raise InvalidField("Surroundings", name, obstacle.name, free_name(kind))

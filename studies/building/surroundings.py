@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from kinematics import (
-    RESERVED_NAMES,
     InvalidField,
     InvalidValue,
     Obstacle,
     PayloadHull,
     Surroundings,
+    free_name,
     require_room,
     taken_names,
 )
@@ -55,7 +55,7 @@ def names_told(file: TomlFile, conversion: Conversion, data: Mapping[str, Any], 
             line = file.line(conversion.spelling[(*path[:2], other, "name")])
             found, expected = f"{found}, as on line {line}", "a name, different from those of the other obstacles"
         else:
-            expected = f"a name that is no member of {mechanism.__name__}, and none of {', '.join(RESERVED_NAMES)}"
+            expected = free_name(mechanism)
         conversion.findings.append(Finding(key, found, expected))
 
 

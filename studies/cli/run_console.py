@@ -35,8 +35,8 @@ def print_outcome(outcome: Outcome, written: Written, as_json: bool) -> None:
         print_table(
             f"Worse than the {outcome.before}, and not asked about", ("",), [(str(change),) for change in worse]
         )
-    if outcome.loads:
-        print_table(loads_title(outcome), LOADS, load_rows(outcome))
+    if rows := load_rows(outcome):
+        print_table(loads_title(outcome), LOADS, rows)
     if outcome.proofs:
         print_table("Proofs over the region", PROOFS, proof_rows(outcome.proofs))
     changed = outcome.problem.robot.geometry.as_dict()
@@ -124,7 +124,7 @@ def _outcome_data(outcome: Outcome, written: Written) -> dict[str, Any]:
         "prototype": {m: w.value for m, w in outcome.prototype.items()} if outcome.prototype else None,
         "unasked": {m: {"value": w.value, "pose": w.pose.tolist()} for m, w in outcome.unasked.items()},
         "unasked_before": {m: w.value for m, w in outcome.unasked_before.items()} if outcome.unasked_before else None,
-        "loads_from_rest": [load.as_dict() for load in outcome.loads],
+        "loads_from_rest": outcome.loads.as_data() if outcome.loads else [],
         "became_worse": [str(change) for change in became_worse(outcome)],
         "active": outcome.active,
         "region": repr(outcome.region),

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from studies.stages import Outcome, Proof, Timing, shown_pose
 from trajectory import FRAME_UNITS
 
@@ -66,8 +68,10 @@ def _figure(value: float) -> str:
 
 def load_rows(outcome: Outcome) -> list[tuple[str, ...]]:
     """What each member bears at most over the region, from rest, in the columns `LOADS`."""
-    numbers = _shown([list(load.as_dict().values())[1:] for load in outcome.loads])
-    return [(load.member, *row) for load, row in zip(outcome.loads, numbers, strict=True)]
+    if (loads := outcome.loads) is None or not loads.names:
+        return []
+    numbers = _shown(np.stack(loads[1:], axis=-1).tolist())
+    return [(name, *row) for name, row in zip(loads.names, numbers, strict=True)]
 
 
 def loads_title(outcome: Outcome) -> str:

@@ -8,11 +8,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from design import Certificate, Problem, Region, Synthesis, WorstPoses, active_sets, synthesise, worst_of
-from kinematics import LinkwrightError, Mechanism
+from kinematics import LinkwrightError, LoadsFromRest, Mechanism
 from studies.building import home_of, problem_of, region_of
 from studies.errors import Failed, RequirementFailed
 from studies.stages.cycle_stage import Timing, time_cycle
-from studies.stages.loads_over_region import RegionLoad
 from studies.stages.on_cycle import WorstOnCycle, failed_on_cycle, worst_on_cycle
 from studies.stages.proofs import Proof, Question, prove_all
 from studies.stages.timed_stage import Lasting, Progress, stage
@@ -36,7 +35,7 @@ class Outcome:
         timing: the timed cycle; None if the study asks for none.
         prototype_timing: the cycle of the study's own geometry, to compare with; None if there is none.
         unasked, unasked_before: as `worst` and `prototype`, of the margins that the study did not ask about.
-        loads: the largest loads of the members over the region, from rest; empty before that stage.
+        loads: the largest loads of the members over the region, from rest; None before that stage.
         proofs: the answers to the claims; empty before that stage.
     """
 
@@ -53,7 +52,7 @@ class Outcome:
     prototype_timing: Timing | None = None
     unasked: dict[str, WorstPoses] = field(default_factory=dict)
     unasked_before: dict[str, WorstPoses] | None = None
-    loads: tuple[RegionLoad, ...] = ()
+    loads: LoadsFromRest | None = None
     proofs: tuple[Proof, ...] = ()
 
     @property

@@ -103,7 +103,8 @@ def _rooms(robot: Mechanism, model: Model) -> Rooms:
     _require_joined(robot, members)
     if around.payload_hull is not None:
         hull = _hull_member(robot, around.payload_hull)
-        members = [m._replace(joints=(*m.joints, *hull.joints)) if _carries(robot, m) else m for m in members] + [hull]
+        held = {member.name for member in _carriers(robot)}
+        members = [m._replace(joints=(*m.joints, *hull.joints)) if m.name in held else m for m in members] + [hull]
     solids = _solids(robot, members)
     boxes = [
         Solid(Member(box.name, (_BASE,), "", ()), Convex.box(box.low, box.high), ca.SX(0))
@@ -146,8 +147,7 @@ def hull_depth(robot: Mechanism) -> float:
     hull = robot.surroundings.payload_hull
     if hull is None:
         return 0.0
-    holders = [member for member in _members(robot) if _carries(robot, member)]
-    *held, of_hull = _solids(robot, [*holders, _hull_member(robot, hull)])
+    *held, of_hull = _solids(robot, [*_carriers(robot), _hull_member(robot, hull)])
     depth = -float(np.min(_at_home(robot, [Pair(of_hull, one).distance for one in held])))
     return max(depth, 0.0) if depth > _ROUNDING * robot.geometry.size else 0.0
 
@@ -174,21 +174,18 @@ def _solids(robot: Mechanism, members: Sequence[Member]) -> list[Solid]:
 
 def _hull_member(robot: Mechanism, hull: PayloadHull) -> Member:
     """The payload as a capsule, or as a plate if it is flat."""
-    if robot.tool_member not in (names := [m.name for m in _members(robot)]):
-        raise InvalidValue(f"{type(robot).__name__} tool_member", robot.tool_member, f"one of {', '.join(names)}")
     shape = hull.shape(*robot.tool_frame(robot.model().pose))
     return Member(_HULL, (_HULL,), "", (shape,))
 
 
-def _carries(robot: Mechanism, member: Member) -> bool:
-    """Whether a member is the one that carries the tool, or is part of the same link."""
-    links = {other.name: other.link or other.name for other in _members(robot)}
-    return links.get(member.name) == links[robot.tool_member]
-
-
-def _members(robot: Mechanism) -> list[Member]:
+def _carriers(robot: Mechanism) -> list[Member]:
+    """The member that carries the tool, and others of the same link."""
     model = robot.model()
-    return robot.members(model.pose, model.joints, model.g)
+    members = robot.members(model.pose, model.joints, model.g)
+    links = {member.name: member.link or member.name for member in members}
+    if robot.tool_member not in links:
+        raise InvalidValue(f"{type(robot).__name__} tool_member", robot.tool_member, f"one of {', '.join(links)}")
+    return [member for member in members if links[member.name] == links[robot.tool_member]]
 
 
 def _walls(robot: Mechanism) -> list[tuple[str, tuple[tuple[int, float, float], ...]]]:

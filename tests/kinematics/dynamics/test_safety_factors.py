@@ -94,15 +94,21 @@ def test_a_still_level_arm_bears_its_own_weight_at_its_root():
     np.testing.assert_allclose(found.safety[arms], aluminium.strength * second / g.arm_radius / moment, rtol=1e-9)
 
 
+def in_random_directions(robot, rng, count):
+    """(count, n) the tool point's acceleration of the robot's load."""
+    lengths = [i for i, axis in enumerate(robot.pose_names) if is_length(axis)]
+    directions = rng.normal(size=(count, len(lengths)))
+    acceleration = np.zeros((count, robot.home.size))
+    acceleration[:, lengths] = robot.load.acceleration * directions / np.linalg.norm(directions, axis=1)[:, None]
+    return acceleration
+
+
 @EVERY
 def test_strength_is_the_worst_direction_of_the_acceleration_or_a_little_less(name):
     """Less only as bending, tension and weight are added as if they were worst together."""
     robot, rng = MECHANISMS[name](), np.random.default_rng(3)
-    lengths = [i for i, axis in enumerate(robot.pose_names) if is_length(axis)]
     pose = robot.home + 0.02 * robot.pose_units() * rng.uniform(-1, 1, robot.home.size)
-    directions = rng.normal(size=(4000, len(lengths)))
-    acceleration = np.zeros((4000, robot.home.size))
-    acceleration[:, lengths] = robot.load.acceleration * directions / np.linalg.norm(directions, axis=1)[:, None]
+    acceleration = in_random_directions(robot, rng, 4000)
     sampled = member_forces(robot, robot.load.payload, pose, np.zeros_like(pose), acceleration).safety.min()
     found = float(robot.margin("strength", pose))
     assert found <= sampled * (1 + 1e-9)
@@ -113,11 +119,8 @@ def test_strength_is_the_worst_direction_of_the_acceleration_or_a_little_less(na
 def test_loads_from_rest_are_those_in_the_worst_direction_or_a_little_more(name):
     """Tension and compression exactly; the others as if acceleration and weight were worst together."""
     robot, rng = MECHANISMS[name](), np.random.default_rng(8)
-    lengths = [i for i, axis in enumerate(robot.pose_names) if is_length(axis)]
     pose = robot.home + 0.02 * robot.pose_units() * rng.uniform(-1, 1, robot.home.size)
-    directions = rng.normal(size=(20_000, len(lengths)))
-    acceleration = np.zeros((20_000, robot.home.size))
-    acceleration[:, lengths] = robot.load.acceleration * directions / np.linalg.norm(directions, axis=1)[:, None]
+    acceleration = in_random_directions(robot, rng, 20_000)
     sampled = member_forces(robot, robot.load.payload, pose, np.zeros_like(pose), acceleration)
     found = loads_from_rest(robot, pose)
     assert found.names == sampled.names
