@@ -69,9 +69,9 @@ from kinematics.margins import (
     PASSIVE_JOINT,
     ROTATIONAL_STIFFNESS,
     STANDARD,
-    hull_depth,
     largest_errors,
     lowest_of_base,
+    payload_inside,
 )
 from kinematics.mathematics import bisected
 from kinematics.mobility import ARCHITECTURES, Architecture, JointGraph, loop_mobility, mobility_of_identical_chains
@@ -178,7 +178,6 @@ __all__ = [
     "free_name",
     "friction",
     "from_actuators",
-    "hull_depth",
     "inverse_dynamics",
     "is_length",
     "joint_motion",
@@ -192,6 +191,7 @@ __all__ = [
     "mjcf",
     "mobility_of_identical_chains",
     "over_spans",
+    "payload_inside",
     "placed_payload",
     "placed_shapes",
     "plain",

@@ -1,7 +1,7 @@
 """Margins, one file for each kind: numbers that must be good enough at every pose, and what proves their bounds."""
 
 from kinematics.margins.accuracy import ANGLE_ACCURACY, POSITION_ACCURACY
-from kinematics.margins.clearance import CLEARANCE, hull_depth, lowest_of_base
+from kinematics.margins.clearance import CLEARANCE, lowest_of_base, payload_inside
 from kinematics.margins.condition import INVERSE_CONDITION_NUMBER
 from kinematics.margins.force_capability import FORCE_CAPABILITY
 from kinematics.margins.isotropic import F_W, FVI, V_W
@@ -43,7 +43,7 @@ __all__ = [
     "PASSIVE_JOINT",
     "ROTATIONAL_STIFFNESS",
     "STANDARD",
-    "hull_depth",
     "largest_errors",
     "lowest_of_base",
+    "payload_inside",
 ]

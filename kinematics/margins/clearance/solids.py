@@ -142,14 +142,25 @@ def lowest_of_base(robot: Mechanism) -> Lowest | None:
     return Lowest(solids[lowest].member.name, float(heights[lowest]))
 
 
-def hull_depth(robot: Mechanism) -> float:
-    """How deep the payload's hull is inside the member that carries it, at home [m]; 0 if it is not."""
-    hull = robot.surroundings.payload_hull
+class Inside(NamedTuple):
+    """A member that the payload's hull is inside, and how deep [m]."""
+
+    member: str
+    depth: float
+
+
+def payload_inside(robot: Mechanism) -> Inside | None:
+    """The member that the payload's hull is deepest inside at home; None if it is outside all members."""
+    hull, model = robot.surroundings.payload_hull, robot.model()
     if hull is None:
-        return 0.0
-    *held, of_hull = _solids(robot, [*_carriers(robot), _hull_member(robot, hull)])
-    depth = -float(np.min(_at_home(robot, [Pair(of_hull, one).distance for one in held])))
-    return max(depth, 0.0) if depth > _ROUNDING * robot.geometry.size else 0.0
+        return None
+    members = robot.all_members(model.pose, model.joints, model.g)
+    *solids, of_hull = _solids(robot, [*members, _hull_member(robot, hull)])
+    depths = -_at_home(robot, [Pair(of_hull, one).distance for one in solids])
+    deepest = int(np.argmax(depths))
+    if depths[deepest] <= _ROUNDING * robot.geometry.size:
+        return None
+    return Inside(solids[deepest].member.name, float(depths[deepest]))
 
 
 def _at_home(robot: Mechanism, expressions: Sequence[ca.SX]) -> np.ndarray:

@@ -35,6 +35,8 @@ class Heli4Geometry(HalvesGeometry):
     rod_wall: float = length(0.0015, doc="of the rods' tubes; not in the paper")
     plate_thickness: float = length(0.012, doc="of both plates; not in the paper")
     plate_rise: float = length(0.050, doc="of the upper plate's middle bar above its rods' ends; not in the paper")
+    screw_radius: float = length(0.006, doc="of the screw, which is the tool's shaft too; not in the paper")
+    screw_length: float = length(0.140, doc="of the screw above the plates' height at theta = 0; not in the paper")
     motor_radius: float = length(0.040, doc="of the motors; not in the paper")
     motor_length: float = length(
         0.080, doc="of the motors along their axes, without their round ends; not in the paper"

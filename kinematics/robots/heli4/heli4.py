@@ -14,7 +14,7 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.evaluation import evaluate
-from kinematics.machine import TURN, Member, Tube
+from kinematics.machine import TURN, Member, Tube, bar
 from kinematics.margins import ANGLE_ACCURACY, INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
 from kinematics.mathematics import gaps, real_roots, working_first
 from kinematics.model import Build, FviBounds, Model, by_name, in_aspect, joined_to_home, polished
@@ -58,7 +58,7 @@ class Heli4(PairedArms):
     rotations = (3,)
     counts_turns = True
     fvi_bounds = FviBounds(joint_speed=20.0, joint_effort=127.0, speed=2.5, force=150.0)
-    tool_member = "lower plate"
+    tool_member = "screw"
     margins = by_name(
         *STANDARD, ANGLE_ACCURACY, ROTATIONAL_STIFFNESS, INTERNAL_DETERMINANT, INTERNAL_STIFFNESS, PASSIVE_JOINT
     )
@@ -128,22 +128,24 @@ class Heli4(PairedArms):
 
     @classmethod
     def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
-        """Arms, both rods of each limb, and two plates in the shape of an H.
+        """Arms, both rods of each limb, two plates in the shape of an H, and the screw from the tool point upward.
 
         The middle bar of the upper plate stands above its rods' ends, so that the plates can pass each other.
         """
         ends = cls.platform_points(pose, g)
         held, radius = studs(ends, cls.limbs(g).axes(), g.parallelogram_width), g.plate_thickness / 2
         plates = []
-        for name, first in (("lower plate", 0), ("upper plate", 2)):
+        for name, thread, first in (("lower plate", "bearing", 0), ("upper plate", "nut", 2)):
             limbs = (first, first + 1)
             axles = [Tube(held[:, 2 * i], held[:, 2 * i + 1], radius, radius) for i in limbs]
             low = [ends[:, i] for i in limbs]
             high = [end + UPPER[first] * ca.vertcat(0, 0, g.plate_rise) for end in low]
             uprights = [Tube(a, b, radius, radius) for a, b in zip(low, high, strict=True)] if UPPER[first] else []
             shapes = (Tube(high[0], high[1], radius, radius), *axles, *uprights)
-            plates.append(Member(name, tuple(pairs_held(*limbs)), "plate", shapes))
-        return limb_members(cls, pose, joints, g, g.parallelogram_width) + plates
+            plates.append(Member(name, (thread, *pairs_held(*limbs)), "plate", shapes))
+        foot, top = (pose[:3] + height * _E_Z for height in (g.screw_radius, g.plate_offset + g.screw_length))
+        screw = bar("screw", ("bearing", "nut"), "screw", foot, top, g.screw_radius)._replace(link="tool")
+        return [*limb_members(cls, pose, joints, g, g.parallelogram_width), *plates, screw]
 
     def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
         """The motors."""

@@ -29,6 +29,16 @@ class PeppermillGeometry(GeometryRecord):
     nut_spacing: float = length(0.30, doc="between the nuts at theta = 0; not in the paper, whose nuts coincide there")
     screw_radius: float = length(0.010, doc="of the platform's screws")
     column_radius: float = length(0.020, doc="of the drive columns; not in the paper")
+    nut_radius: float = length(0.020, doc="of the nuts; not in the paper")
+    nut_length: float = length(0.030, doc="of the nuts along the screws, without their round ends; not in the paper")
+    carriage_radius: float = length(0.030, doc="of the carriages around their columns; not in the paper")
+    carriage_length: float = length(
+        0.060, doc="of the carriages along their columns, without their round ends; not in the paper"
+    )
+    motor_radius: float = length(0.030, doc="of the motors at both ends of each column; not in the paper")
+    motor_length: float = length(
+        0.100, doc="of the motors along their axes, without their round ends; not in the paper"
+    )
     drive_pitch: float = screw_pitch(0.10, doc="p_c, of the drives' screws")
 
     def __post_init__(self) -> None:

@@ -225,13 +225,26 @@ class Peppermill(Mechanism):
         return origins, carriages, carriages + proximal, nuts
 
     def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
-        """The drive columns, as long as the carriages' ranges. A column without a range is left out."""
+        """Carriages and nuts; the drive columns, with room for their carriages at both ends of their range, and a motor
+        at each end. A column without a range is left out, with its motors.
+        """
         origins, limits = self.points(pose, joints, g)[0] + _nuts_apart(g), self.ranges.limits(4)
-        along = ca.DM([[1, 0], [0, 1], [0, 0]])
+        carriages, _, nuts = self.points_apart(pose, joints, g)
         found = []
-        for i in np.flatnonzero(np.isfinite(limits[:2]).all(axis=1)).tolist():
-            start, end = (origins[:, i] + limit * along[:, i] for limit in limits[i])
-            found.append(bar(f"column {i + 1}", ("base", f"carriage {i + 1}"), "", start, end, g.column_radius))
+        for i, axis in enumerate(AXES[:2]):
+            k, half, up = i + 1, g.carriage_length / 2, g.nut_length / 2 * _E_Z
+            ends = carriages[:, i] - half * axis, carriages[:, i] + half * axis
+            found.append(bar(f"carriage {k}", (f"column {k}", f"drive {k}"), "", *ends, g.carriage_radius))
+            ends = nuts[:, i] - up, nuts[:, i] + up
+            found.append(bar(f"nut {k}", (f"nut {k}", f"thread {k}"), "", *ends, g.nut_radius))
+            if not np.isfinite(limits[i]).all():
+                continue
+            reach = half + g.carriage_radius
+            low, high = (origins[:, i] + at * axis for at in (limits[i, 0] - reach, limits[i, 1] + reach))
+            found.append(bar(f"column {k}", ("base", f"column {k}"), "", low, high, g.column_radius))
+            for name, end, way in ((f"motor {k}L", low, -axis), (f"motor {k}R", high, axis)):
+                near, far = (end + (g.motor_radius + part * g.motor_length) * way for part in (0, 1))
+                found.append(bar(name, ("base",), "", near, far, g.motor_radius))
         return found
 
     link_tree = links
@@ -289,14 +302,14 @@ class Peppermill(Mechanism):
     def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
         """Proximal and distal links, and the screws between the nuts; all at `points_apart`."""
         carriages, elbows, nuts = cls.points_apart(pose, joints, g)
-        screws = bar("screws", ("nut 1", "nut 2"), "screw", nuts[:, 0], nuts[:, 1], g.screw_radius)
+        screws = bar("screws", ("thread 1", "thread 2"), "screw", nuts[:, 0], nuts[:, 1], g.screw_radius)
         found = [screws._replace(link="tool")]
         for i, k in enumerate(("1", "2")):
-            slide, elbow, nut = f"carriage {k}", f"elbow {k}", f"nut {k}"
+            drive, elbow, nut = (f"drive {k}", f"column {k}"), f"elbow {k}", (f"nut {k}", f"thread {k}")
             near, far = (_link(*ends, g) for ends in ((carriages[:, i], elbows[:, i]), (elbows[:, i], nuts[:, i])))
             found += [
-                Member(f"proximal link {k}", (slide, elbow), "link", (near,)),
-                Member(f"distal link {k}", (elbow, nut), "link", (far,), f"rod {k}"),
+                Member(f"proximal link {k}", (*drive, elbow), "link", (near,)),
+                Member(f"distal link {k}", (elbow, *nut), "link", (far,), f"rod {k}"),
             ]
         return found
 

@@ -21,6 +21,8 @@ class Planar3PRRGeometry(PlanarGeometry):
 
     rod_lengths: tuple[float, ...] = length((0.55,) * 3, doc="l_i, slider to platform")
     rail_radius: float = length(0.010, doc="of the rails")
+    slide_radius: float = length(0.020, doc="of the slides around their rails")
+    slide_length: float = length(0.060, doc="of the slides along their rails, without their round ends")
     rail_angles: tuple[float, ...] = angle(tuple(a + TURN / 4 for a in AZIMUTHS), doc="of the rails, from x")
 
     def _drives(self) -> list[Array]:
@@ -98,12 +100,15 @@ class Planar3PRR(Planar):
         return g.rod_lengths, Planar.determinant_scale(g) * g.rod_lengths[0] * g.rod_lengths[1] * g.rod_lengths[2]
 
     def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
-        """The rails, as long as the joints' ranges. A rail without a range is left out."""
+        """A slide for each rod, and the rails, as long as the joints' ranges. A rail without a range is left out."""
         base, along, limits = self.base_points(g), self._rails(g)[0], self.ranges.limits(3)
         found = []
-        for i in np.flatnonzero(np.isfinite(limits).all(axis=1)).tolist():
-            start, end = (base[:, i] + limit * along[:, i] for limit in limits[i])
-            found.append(bar(f"rail {i + 1}", ("base", f"A{i + 1}"), "", start, end, g.rail_radius))
+        for i, slide in enumerate(ca.horzsplit(self.circles(joints, g)[0])):
+            held, half = f"A{i + 1}", g.slide_length / 2 * along[:, i]
+            found.append(bar(f"slide {i + 1}", (held,), "", slide - half, slide + half, g.slide_radius))
+            if np.isfinite(limits[i]).all():
+                start, end = (base[:, i] + limit * along[:, i] for limit in limits[i])
+                found.append(bar(f"rail {i + 1}", ("base", held), "", start, end, g.rail_radius))
         return found
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:

@@ -10,6 +10,7 @@ import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.machine import (
+    AXES,
     ROTARY,
     Bodies,
     DriveTrain,
@@ -18,6 +19,7 @@ from kinematics.machine import (
     Member,
     Pair,
     angle,
+    bar,
     length,
     shared_joints,
 )
@@ -33,6 +35,8 @@ class Planar3RRRGeometry(PlanarGeometry):
     arm_lengths: tuple[float, ...] = length((0.30,) * 3, doc="L_i, drive to elbow")
     rod_lengths: tuple[float, ...] = length((0.35,) * 3, doc="l_i, elbow to platform")
     zero_angles: tuple[float, ...] = angle(AZIMUTHS, doc="of the arms at q_i = 0, from x")
+    motor_radius: float = length(0.025, doc="of the motors below the arms")
+    motor_length: float = length(0.060, doc="of the motors, without their round ends")
 
     def _drives(self) -> list[Array]:
         """Base joint, arm and rod; where an arm is counted from makes no other leg."""
@@ -120,6 +124,15 @@ class Planar3RRR(Planar, RotaryLimbs):
             for i in range(3)
         ]
         return arms + super().members(pose, joints, g)
+
+    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
+        """The motors, below the plane of the links by as much as a link's radius."""
+        base, held = self.base_points(g), shared_joints("P", np.array(self.geometry.base_points))
+        top, found = 2 * g.link_radius + g.motor_radius, []
+        for i in range(3):
+            start, end = (base[:, i] - height * AXES[2] for height in (top, top + g.motor_length))
+            found.append(bar(f"motor {i + 1}", ("base", held[i]), "", start, end, g.motor_radius))
+        return found
 
     statics = RotaryLimbs.statics
 

@@ -22,10 +22,11 @@ from kinematics import (
     PayloadHull,
     Peppermill,
     Planar3PRR,
+    Planar3RRR,
     Redundant3T1R,
     Surroundings,
-    hull_depth,
     lowest_of_base,
+    payload_inside,
     require_room,
 )
 from kinematics.margins.clearance.solids import rooms
@@ -107,11 +108,12 @@ def test_heli4s_members_are_compared_unless_they_turn_on_one_another() -> None:
     """The list of joints is written here once more, by hand."""
     plates = {"lower plate": "12", "upper plate": "34"}
     rods = [f"rod {i} {side}" for i in "1234" for side in "ab"]
-    moving = [*plates, *rods, *(f"arm {i}" for i in "1234")]
+    moving = ["screw", *plates, *rods, *(f"arm {i}" for i in "1234")]
     every = {frozenset(pair) for pair in combinations(moving, 2)}
     every |= {frozenset((f"motor {i}", member)) for i in "1234" for member in moving}
     joined = {frozenset((f"arm {i}", other)) for i in "1234" for other in (f"motor {i}", f"rod {i} a", f"rod {i} b")}
     joined |= {frozenset((plate, f"rod {i} {s}")) for plate, limbs in plates.items() for i in limbs for s in "ab"}
+    joined |= {frozenset(("screw", plate)) for plate in plates}
     assert compared(Heli4()) == every - joined
 
 
@@ -194,9 +196,35 @@ def test_a_peppermill_column_is_as_far_as_it_is_above_or_below() -> None:
     apart = 2 * g.half_distance + g.nut_spacing
     below = between(robot, "proximal link 2", "column 1", pose)
     assert below == pytest.approx(apart - g.link_radius - g.column_radius, abs=0.1)
-    assert robot.with_geometry(replace(g, column_radius=0.03)).margin("clearance", pose) == pytest.approx(
-        float(robot.margin("clearance", pose)) - 0.01, abs=1e-12
-    )
+    thick = robot.with_geometry(replace(g, column_radius=g.column_radius + 0.01))
+    assert between(thick, "proximal link 2", "column 1", pose) == pytest.approx(below - 0.01, abs=1e-12)
+
+
+def test_a_peppermill_nut_comes_nearer_to_the_other_by_both_pitches_a_turn() -> None:
+    robot = Peppermill()
+    g = robot.geometry
+    for turns in (-1.0, 0.0, 0.5, 1.0):
+        apart = g.nut_spacing - turns * (g.pitches[0] - g.pitches[1])
+        room = between(robot, "nut 1", "nut 2", np.array([0.0, 0.0, 0.0, turns * 2 * np.pi]))
+        assert room == pytest.approx(apart - g.nut_length - 2 * g.nut_radius, abs=1e-12)
+
+
+def test_a_peppermill_carriage_meets_its_motor_where_its_range_ends() -> None:
+    robot = Peppermill()
+    (low, high), *_ = robot.ranges.limits(4)
+    pose = np.array([0.07, -0.02, 0.0, 0.0])
+    assert between(robot, "carriage 1", "motor 1L", pose) == pytest.approx(0.07 - low, abs=1e-12)
+    assert between(robot, "carriage 1", "motor 1R", pose) == pytest.approx(high - 0.07, abs=1e-12)
+
+
+def test_an_arm_of_a_planar_robot_passes_a_link_radius_above_another_motor() -> None:
+    robot = Planar3RRR()
+    g = robot.geometry
+    angle = g.zero_angles[0] + robot.inverse(robot.home)[0]
+    under = np.array(g.base_points[0]) + g.arm_lengths[0] / 2 * np.array([np.cos(angle), np.sin(angle)])
+    moved = replace(g, base_points=(g.base_points[0], tuple(under), g.base_points[2]))
+    other = Planar3RRR(moved, home=robot.home)
+    assert between(other, "arm 1", "motor 2", robot.home) == pytest.approx(g.link_radius, abs=1e-12)
 
 
 def test_the_floor_is_as_far_as_the_lowest_point() -> None:
@@ -236,9 +264,19 @@ def test_a_payload_hangs_with_the_tool_and_tilts_with_it() -> None:
     assert between(placed, "payload", "the floor", pose) == pytest.approx(
         min(top[2], pose[2] + np.cos(0.15) * 0.05) - 0.02 - 0.3, abs=1e-12
     )
-    assert hull_depth(robot) == 0.0
+    assert payload_inside(robot) is None
     inside = robot.with_surroundings(Surroundings(payload_hull=PayloadHull(0.02, 0.0, 0.1)))
-    assert hull_depth(inside) == pytest.approx(robot.geometry.plate_thickness / 2, abs=0.02)
+    found = payload_inside(inside)
+    assert found is not None
+    assert found.member == "platform"
+    assert found.depth == pytest.approx(robot.geometry.plate_thickness / 2, abs=0.02)
+
+
+def test_a_payload_among_the_bars_of_an_articulated_platform_is_refused() -> None:
+    for kind, member in ((Par4, "bars"), (Heli4, "screw"), (Peppermill, "screws")):
+        hull = PayloadHull(radius=0.01, low=-0.001, high=0.03)
+        with pytest.raises(InvalidValue, match=rf"outside all members; at home it is .* inside the {member}"):
+            require_room(kind(surroundings=Surroundings(payload_hull=hull)))
 
 
 def test_a_flat_payload_is_as_wide_as_its_radius() -> None:
@@ -280,7 +318,10 @@ def boxed(name: str) -> Surroundings:
             "found payload; .* none of base, floor, payload, the floor",
         ),
         (lambda: require_room(Delta().with_surroundings(Surroundings(floor=0.3))), "floor: .* motor 1 reaches down to"),
-        (lambda: require_room(Delta().with_surroundings(IN_THE_PLATE)), "high: .* expected a hull beside the plate"),
+        (
+            lambda: require_room(Delta().with_surroundings(IN_THE_PLATE)),
+            "high: .* outside all members; .* inside the plate",
+        ),
         (lambda: Surroundings(floor=float("nan")), "Surroundings floor"),
         (lambda: Surroundings(obstacles=(Obstacle("a", (0, 0, 0), (1, 1, 1)),) * 2), "a different name for each"),
     ],

@@ -74,7 +74,7 @@ def test_the_report_states_materials_load_and_surroundings(tmp_path: Path) -> No
     [
         (
             ("high_mm = -6", "high_mm = 4"),
-            r"payload_hull\.high_mm: found 4; expected a hull beside the plate, .* inside",
+            r"payload_hull\.high_mm: found 4; expected a hull outside all members; .* inside the plate",
         ),
         (("floor_mm = -950", "floor_mm = -10"), r"floor_mm: found -10; expected a height below the base: motor 1"),
         (("0.3, -0.9]", "0.3, -1.2]"), r"obstacle\.high: found \[1, 0\.3, -1\.2\]; expected .* each above that of low"),
