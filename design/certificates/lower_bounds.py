@@ -13,17 +13,15 @@ import casadi as ca
 import numba
 import numpy as np
 
+from design.certificates.branch_conditions import branch_conditions
 from design.certificates.scaled_rows import ScaledRows
 from design.claims import Statement, to_show
 from design.regions import Region
 from kinematics import (
     Array,
     ClaimSymbols,
-    Op,
-    Program,
     enclose,
     over_spans,
-    run_through,
 )
 
 _UP = 1.0 + 2.0**-48  # covers the rounding of products and of their sum over fewer than ten coordinates
@@ -52,7 +50,7 @@ class LowerBounds:
         gradient = ca.jacobian(claims.expressions, moving)
         self._rows = ScaledRows(statement, claim, claims)
         self._count = claims.expressions.numel()
-        conditions = _conditions(self._rows.symbols, claims.expressions)
+        conditions = branch_conditions(self._rows.symbols, claims.expressions)
         self._with_gradient = self._rows.program(claims.expressions, gradient, conditions)
         self._plain = self._rows.program(claims.expressions)
         self._slopes = self._count * (1 + self.free.size)  # the place where the conditions start
@@ -91,33 +89,6 @@ class LowerBounds:
         spread = np.where(unknown[:, None], ((high - low) / self._extent)[:, self.free], spread)
         result: Array = self.free[spread.argmax(axis=1)]
         return result
-
-
-def _conditions(symbols: list[ca.SX], expressions: ca.SX) -> ca.SX:
-    """(k,) all conditions at which the expressions branch or jump: 0 or 1, or a sign."""
-    found: list[ca.SX] = []
-
-    def noted(condition: ca.SX) -> ca.SX:
-        found.append(condition)
-        return condition
-
-    def branch(condition: ca.SX, value: ca.SX) -> ca.SX:
-        noted(ca.logic_not(condition))
-        return ca.if_else(condition, value, 0)
-
-    program = Program.of(ca.Function("claims", symbols, [ca.densify(expressions)]))
-    run_through(
-        program,
-        [symbol[i] for symbol in symbols for i in range(symbol.numel())],
-        {
-            Op.LT: lambda a, b: noted(ca.lt(a, b)),
-            Op.LE: lambda a, b: noted(ca.le(a, b)),
-            Op.NOT: lambda a, _: noted(ca.logic_not(a)),
-            Op.SIGN: lambda a, _: noted(ca.sign(a)),
-            Op.IF_ELSE_ZERO: branch,
-        },
-    )
-    return ca.vertcat(*found) if found else ca.SX(0, 1)
 
 
 @numba.njit(nogil=True, cache=True, error_model="numpy")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar, NamedTuple
 
 import casadi as ca
+import numpy as np
 
 from kinematics.arrays import Array
 from kinematics.mathematics import adjugate
@@ -22,6 +23,7 @@ from kinematics.model import (
 )
 
 _REGULAR = 1e-6  # what det M, about 1 in the middle of a box, must exceed
+_NEARLY = 1e-14  # keeps a singular matrix from stopping the search for good numbers
 
 
 class _Isotropic(Margin):
@@ -53,6 +55,11 @@ class Speed(_Isotropic):
             return super().to_show(robot, claim, inside, positive)
         return ToShow(ca.vertcat(*_Rows.of(robot, claim.measure.length).speeds(1, claim.bound)), ca.SX(0, 0))
 
+    def to_refute(self, robot: Mechanism, claim: ClaimSymbols) -> ToShow:
+        """`_Rows.speeds` for a unit speed."""
+        least = ca.fmax(claim.bound, 0)  # what is at least 0 keeps every bound below
+        return ToShow(ca.vertcat(*_Rows.of(robot, claim.measure.length).speeds(1, least)), ca.SX(0, 0))
+
 
 class Force(_Isotropic):
     """f_w, for unit effort of the actuators."""
@@ -68,6 +75,12 @@ class Force(_Isotropic):
             return super().to_show(robot, claim, inside, positive)
         rows = _Rows.of(robot, claim.measure.length)
         return ToShow(ca.vertcat(*rows.forces(1, claim.bound)), rows.scaling, rows.matrix)
+
+    def to_refute(self, robot: Mechanism, claim: ClaimSymbols) -> ToShow:
+        """`_Rows.forces_with_witness` for a unit effort."""
+        rows = _Rows.of(robot, claim.measure.length)
+        found, witness = rows.forces_with_witness(1, ca.fmax(claim.bound, 0))
+        return ToShow(ca.vertcat(*found), witness, rows.matrix, _witnesses)
 
 
 class Fvi(Margin):
@@ -93,6 +106,13 @@ class Fvi(Margin):
         speeds = rows.speeds(given.joint_speed, claim.bound * given.speed)
         forces = rows.forces(given.joint_effort, claim.bound * given.force)
         return ToShow(ca.vertcat(*speeds, *forces), rows.scaling, rows.matrix)
+
+    def to_refute(self, robot: Mechanism, claim: ClaimSymbols) -> ToShow:
+        """`_Rows.speeds` and `_Rows.forces_with_witness`."""
+        given, rows, least = claim.measure.fvi, _Rows.of(robot, claim.measure.length), ca.fmax(claim.bound, 0)
+        speeds = rows.speeds(given.joint_speed, least * given.speed)
+        forces, witness = rows.forces_with_witness(given.joint_effort, least * given.force)
+        return ToShow(ca.vertcat(*speeds, *forces), witness, rows.matrix, _witnesses)
 
 
 class _Rows(NamedTuple):
@@ -141,6 +161,32 @@ class _Rows(NamedTuple):
         columns = self.scaling @ (cofactors if square else cofactors @ scaled.T)
         forces = [(most * det) ** 2 - (least * self.sizes[i]) ** 2 * ca.sumsqr(columns[:, i]) for i in range(count)]
         return [*forces, det - _REGULAR]
+
+    def forces_with_witness(self, most: Any, least: ca.SX) -> tuple[list[ca.SX], ca.SX]:
+        """Where force i, tau_max / |p_i|, is at least c: rows at least 0 for any numbers of the second result.
+
+        A square J_mw = diag(1 / b) A has A p_i = b_i e_i, so mu_i b_i = (A^T mu) . p_i <= |A^T mu| |p_i| for each mu,
+        and tau_max^2 |A^T mu|^2 - c^2 (mu_i b_i)^2 >= 0. With more joints than freedoms M p_i = J^T e_i, M = J^T J, so
+        (J mu)_i = (M mu) . p_i in the same way. Equality holds where A^T mu, or M mu, is along p_i: `_witnesses`.
+        """
+        a, count, square = self.matrix, self.matrix.shape[0], self.matrix.shape[0] == self.matrix.shape[1]
+        witness = ca.SX.sym("witness", a.shape[1], count)
+        across, along = (a.T @ witness, witness) if square else (a.T @ (a @ witness), a @ witness)
+        rows = [most**2 * ca.sumsqr(across[:, i]) - (least * self.sizes[i] * along[i, i]) ** 2 for i in range(count)]
+        return rows, witness
+
+
+def _witnesses(values: Array) -> Array:
+    """(k, m, n) A, or J of more rows than columns -> (k, n, m) the best mu for each force, the largest entry 1."""
+    m, n = values.shape[1:]
+    usable = np.isfinite(values).all(axis=(1, 2), keepdims=True)
+    a = np.where(usable, values, np.eye(m, n))
+    a = a / np.maximum(np.abs(a).max(axis=(1, 2), keepdims=True), _NEARLY)
+    turned = np.swapaxes(a, 1, 2)
+    inverse = np.linalg.inv((a @ turned if m == n else turned @ a) + _NEARLY * np.eye(n))
+    found = inverse if m == n else inverse @ inverse @ turned
+    result: Array = found / np.maximum(np.abs(found).max(axis=1, keepdims=True), _NEARLY)
+    return result
 
 
 V_W, F_W, FVI = Speed(), Force(), Fvi()

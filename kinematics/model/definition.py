@@ -138,6 +138,11 @@ class Definition(ABC):
         """
         return ca.SX(3, 0)
 
+    @staticmethod
+    def turns_left(pose: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:  # noqa: ARG004
+        """By name, how far each passive joint that is not at a rod's end may still turn [rad]: `passive_joint`."""
+        return {}
+
     def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
         """Bodies in the way whose masses follow from no section: the base, rails, slides, motors.
 

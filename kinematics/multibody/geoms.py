@@ -11,6 +11,7 @@ from kinematics.arrays import Array
 from kinematics.machine import Member, Reference, Tube
 from kinematics.multibody.placed_shapes import PlacedShape
 
+_ONE_POINT = 1e-9  # [m]
 WEIGHTLESS = {"mass": "0", "contype": "0", "conaffinity": "0"}
 
 
@@ -31,11 +32,18 @@ def add_geoms(members: list[Member], bodies: dict[str, Xml.Element], asset: Xml.
             geom = Xml.SubElement(body, "geom", WEIGHTLESS, name=name)  # type: ignore[arg-type]
             corners, around = np.array(reference(shape.corners)).T, float(reference(shape.around))
             if isinstance(shape, Tube):
-                geom.attrib.update(type="capsule", fromto=every_digit(corners), size=every_digit(around))
+                geom.attrib.update(_capsule(corners, around))
             else:
                 sides = PlacedShape(member.name, member.material, corners, around).sides()
                 Xml.SubElement(asset, "mesh", name=name, vertex=every_digit(np.vstack(sides)))
                 geom.attrib.update(type="mesh", mesh=name)
+
+
+def _capsule(corners: Array, around: float) -> dict[str, str]:
+    """A sphere where both ends are one to MuJoCo's own limit."""
+    if np.linalg.norm(corners[1] - corners[0]) < _ONE_POINT:
+        return {"type": "sphere", "pos": every_digit(corners[0]), "size": every_digit(around)}
+    return {"type": "capsule", "fromto": every_digit(corners), "size": every_digit(around)}
 
 
 def every_digit(values: ca.DM | Array | float) -> str:

@@ -1,4 +1,4 @@
-"""The box that a mechanism's members sweep."""
+"""The box that a mechanism's moving members sweep."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from kinematics.model import Build, Mechanism, Model
 
 
 def swept_box(robot: Mechanism, poses: Array) -> Array:
-    """(k, n) poses -> (2, 3) the least and the largest coordinates of all members at those within reach [m]."""
+    """(k, n) poses -> (2, 3) the least and the largest coordinates of what moves at those within reach [m]."""
     low, high = evaluate(robot.program(_box), poses)
     return np.stack([np.nanmin(low, axis=0), np.nanmax(high, axis=0)])
 
@@ -19,8 +19,8 @@ def swept_box(robot: Mechanism, poses: Array) -> Array:
 def _box(robot: Mechanism, model: Model) -> Build:
     """(3,) of all members at a pose."""
     low, high = [], []
-    for member in robot.members(model.pose, model.joints, model.g):
-        for shape in member.shapes:
+    for member in robot.all_members(model.pose, model.joints, model.g):
+        for shape in () if "base" in member.joints else member.shapes:
             low.append(shape.corners - shape.around)
             high.append(shape.corners + shape.around)
     least, most = (model.at_pose(ca.horzcat(*corners)) for corners in (low, high))

@@ -64,10 +64,11 @@ def mechanism_picture(robots: dict[str, Mechanism], region: Region) -> bytes:
         poses = {label: pose_in(robot, region) for label, robot in robots.items()}
         drawn = {label: _finite(robot.polylines(poses[label])) for label, robot in robots.items()}
         shapes = {label: placed_shapes(robot, poses[label]) for label, robot in robots.items()}
-        around = [side for own in shapes.values() for shape in own if shape.kind for side in _limits(shape)]
-        low, high = _common_box(
-            [line for lines in drawn.values() for line in lines.values()] + region.outline() + around
-        )
+        known = [line for own in drawn.values() for line in own.values()] + region.outline()
+        every = [shape for own in shapes.values() for shape in own]
+        low, high = _common_box(known + [side for shape in every if shape.kind for side in _limits(shape)])
+        short = [shape for shape in every if np.ptp(shape.corners, axis=0).max() <= (high - low).max()]
+        low, high = _common_box([low[None], high[None], *(side for shape in short for side in _limits(shape))])
         parts = {label: parts_around(robot, poses[label], low, high) for label, robot in robots.items()}
         seen = [polygon for own in parts.values() for part in own for polygon in part.polygons]
         low, high = _common_box([low[None], high[None], *seen])
@@ -99,10 +100,12 @@ def _limits(shape: PlacedShape) -> list[Array]:
 
 
 def _draw_bodies(axes: Any, shapes: list[PlacedShape], low: Array, high: Array) -> None:
-    """The members, and what of the base is within the box; one collection, so that what is in front hides the rest."""
+    """The members, without what reaches out of the box, such as long rails; one collection, so that what is in front
+    hides the rest.
+    """
     polygons, colours = [], []
     for shape in shapes:
-        within = bool(shape.kind) or not ((shape.corners < low) | (shape.corners > high)).any()
+        within = not ((shape.corners < low) | (shape.corners > high)).any()
         if np.isfinite(shape.corners).all() and within:
             found = faces(shape)
             polygons += found

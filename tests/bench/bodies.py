@@ -48,7 +48,7 @@ def _masses() -> str:
 
 def _row(name: str, robot: Mechanism) -> str:
     model = robot.model()
-    members = robot.members(model.pose, model.joints, model.g)
+    members = robot.all_members(model.pose, model.joints, model.g)
     mass, clearance = (float(robot.margin(margin, robot.home)) for margin in ("mass", "clearance"))
     light = mass - _mass_without_sections(robot)
     where = robot.margin_place("clearance", robot.home)
@@ -56,11 +56,11 @@ def _row(name: str, robot: Mechanism) -> str:
 
 
 def _mass_without_sections(robot: Mechanism) -> float:
-    """The mass at a wall of next to nothing, and a plate as thin."""
+    """The mass at a wall of next to nothing, and a plate or a screw as thin."""
     changes = {
         field: tuple(1e-12 for _ in value) if isinstance(value, tuple) else 1e-12
         for field, value in robot.geometry.as_dict().items()
-        if field.endswith(("_wall", "_thickness"))
+        if field.endswith(("_wall", "_thickness")) or field == "screw_radius"
     }
     thin = robot.with_geometry(robot.geometry.with_values(**changes))
     model = thin.model()

@@ -150,13 +150,19 @@ class Inside(NamedTuple):
 
 
 def payload_inside(robot: Mechanism) -> Inside | None:
-    """The member that the payload's hull is deepest inside at home; None if it is outside all members."""
+    """The member that the payload's hull is deepest inside at home; None if it is outside all members.
+
+    Raises:
+        InvalidValue: no member is the mechanism's `tool_member`.
+    """
     hull, model = robot.surroundings.payload_hull, robot.model()
     if hull is None:
         return None
+    _carriers(robot)  # there must be one
     members = robot.all_members(model.pose, model.joints, model.g)
     *solids, of_hull = _solids(robot, [*members, _hull_member(robot, hull)])
     depths = -_at_home(robot, [Pair(of_hull, one).distance for one in solids])
+    depths = np.where(np.isfinite(depths), depths, -np.inf)  # a limb that cannot reach home has no place
     deepest = int(np.argmax(depths))
     if depths[deepest] <= _ROUNDING * robot.geometry.size:
         return None

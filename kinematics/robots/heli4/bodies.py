@@ -24,11 +24,11 @@ class Heli4Inertia(ArmInertia):
         plate_fittings: what the lower plate (limbs 1 and 2) and the upper plate carry: bearings, nut, tool, joints.
         plate_masses: masses of both plates, the lower one with screw and tool; None takes those of bars, screw and
             fittings.
-        tool: inertia of tool and screw about e_z; the payload is a point at the tool point.
+        tool: inertia of tool and screw about e_z, given for both; the payload is a point at the tool point.
     """
 
     _shapes = MappingProxyType({"plate_masses": (2,)})
-    plate_fittings: tuple[float, float] = (0.3336, 0.4585)
+    plate_fittings: tuple[float, float] = (0.347, 0.4585)
     plate_masses: tuple[float, float] | None = None
     tool: float = 6e-4
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from kinematics.machine import angle, length, screw_pitch
+from kinematics.machine import angle, length, ratio, screw_pitch
 from kinematics.robots.shared import HalvesGeometry
 
 UPPER = (0.0, 0.0, 1.0, 1.0)  # 1 for the limbs that hold the plate on the screw: (7), (8)
@@ -36,7 +36,7 @@ class Heli4Geometry(HalvesGeometry):
     plate_thickness: float = length(0.012, doc="of both plates; not in the paper")
     plate_rise: float = length(0.050, doc="of the upper plate's middle bar above its rods' ends; not in the paper")
     screw_radius: float = length(0.006, doc="of the screw, which is the tool's shaft too; not in the paper")
-    screw_length: float = length(0.140, doc="of the screw above the plates' height at theta = 0; not in the paper")
+    screw_turns: float = ratio(1.5, doc="turns of the tool to either side that the screw is long enough for; ours")
     motor_radius: float = length(0.040, doc="of the motors; not in the paper")
     motor_length: float = length(
         0.080, doc="of the motors along their axes, without their round ends; not in the paper"

@@ -128,7 +128,7 @@ class Heli4(PairedArms):
 
     @classmethod
     def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
-        """Arms, both rods of each limb, two plates in the shape of an H, and the screw from the tool point upward.
+        """Arms, both rods of each limb, two plates in the shape of an H, and the screw from the tool point up.
 
         The middle bar of the upper plate stands above its rods' ends, so that the plates can pass each other.
         """
@@ -143,9 +143,16 @@ class Heli4(PairedArms):
             uprights = [Tube(a, b, radius, radius) for a, b in zip(low, high, strict=True)] if UPPER[first] else []
             shapes = (Tube(high[0], high[1], radius, radius), *axles, *uprights)
             plates.append(Member(name, (thread, *pairs_held(*limbs)), "plate", shapes))
-        foot, top = (pose[:3] + height * _E_Z for height in (g.screw_radius, g.plate_offset + g.screw_length))
+        nut, travel = g.plate_offset + g.height_step + g.plate_rise, g.screw_turns * ca.fabs(g.pitch)
+        lowest = ca.fmin(g.screw_radius, ca.fmin(g.plate_offset, nut - travel))
+        foot, top = (pose[:3] + height * _E_Z for height in (lowest, ca.fmax(g.plate_offset, nut + travel)))
         screw = bar("screw", ("bearing", "nut"), "screw", foot, top, g.screw_radius)._replace(link="tool")
         return [*limb_members(cls, pose, joints, g, g.parallelogram_width), *plates, screw]
+
+    @staticmethod
+    def turns_left(pose: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
+        """To both ends of the screw."""
+        return {"nut on the screw": g.screw_turns * TURN - ca.fabs(pose[3])}
 
     def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:  # noqa: ARG002
         """The motors."""

@@ -239,12 +239,11 @@ class Peppermill(Mechanism):
             found.append(bar(f"nut {k}", (f"nut {k}", f"thread {k}"), "", *ends, g.nut_radius))
             if not np.isfinite(limits[i]).all():
                 continue
-            reach = half + g.carriage_radius
+            reach = half + g.carriage_radius + g.motor_radius
             low, high = (origins[:, i] + at * axis for at in (limits[i, 0] - reach, limits[i, 1] + reach))
             found.append(bar(f"column {k}", ("base", f"column {k}"), "", low, high, g.column_radius))
             for name, end, way in ((f"motor {k}L", low, -axis), (f"motor {k}R", high, axis)):
-                near, far = (end + (g.motor_radius + part * g.motor_length) * way for part in (0, 1))
-                found.append(bar(name, ("base",), "", near, far, g.motor_radius))
+                found.append(bar(name, ("base",), "", end, end + g.motor_length * way, g.motor_radius))
         return found
 
     link_tree = links

@@ -27,10 +27,11 @@ from kinematics import (
     Surroundings,
     lowest_of_base,
     payload_inside,
+    placed_shapes,
     require_room,
 )
 from kinematics.margins.clearance.solids import rooms
-from kinematics.mathematics import Convex, signed_distance
+from kinematics.mathematics import Convex, segment_distances, signed_distance
 from tests.kinematics.margins.bodies import between, components, corners, signed_by_fcl, signed_by_hull
 from tests.sizes import every_mechanism
 
@@ -329,3 +330,40 @@ def boxed(name: str) -> Surroundings:
 def test_bad_surroundings_are_told_with_their_field(made: Callable[[], object], words: str) -> None:
     with pytest.raises(InvalidValue, match=words):
         made()
+
+
+def test_a_hull_is_judged_where_a_limb_cannot_reach_home() -> None:
+    for kind, home in ((Delta, [0, 0, -3.0]), (Heli4, [0, 0, -3.0, 0]), (Peppermill, [0, 0, 5.0, 0])):
+        robot = kind(home=home, surroundings=Surroundings(payload_hull=PayloadHull(0.02, -0.6, -0.5)))
+        assert payload_inside(robot) is None
+    assert payload_inside(Delta(home=[0, 0, -3.0], surroundings=IN_THE_PLATE)).member == "plate"
+
+
+def test_heli4s_screw_joins_both_plates_whatever_their_heights() -> None:
+    for change in (
+        {"height_step": 0.2},
+        {"height_step": -0.2},
+        {"plate_rise": 0.2},
+        {"plate_offset": -0.2},
+        {"pitch": -0.1},
+    ):
+        robot = Heli4(replace(Heli4().geometry, **change))
+        for turns in (-1.5, 0.0, 1.5):
+            pose = robot.home + np.array([0, 0, 0, turns * 2 * np.pi])
+            assert overlap(robot, "screw", "lower plate", pose) > 0.0
+            assert overlap(robot, "screw", "upper plate", pose) > 0.0
+
+
+def overlap(robot: Mechanism, one: str, two: str, pose: np.ndarray) -> float:
+    """Of two members that may touch: how deep their shapes are in one another."""
+    shapes = placed_shapes(robot, pose)
+    first, second = ([s for s in shapes if s.member == name] for name in (one, two))
+    return max(a.around + b.around - float(segment_distances(a.corners, b.corners)) for a in first for b in second)
+
+
+def test_a_nut_leaves_its_screw_where_the_screws_turns_end() -> None:
+    robot = Heli4()
+    for turns in (1.6, -1.6):
+        pose = robot.home + np.array([0, 0, 0, turns * 2 * np.pi])
+        assert robot.margin("passive_joint", pose) == pytest.approx(-0.1 * 2 * np.pi, abs=1e-12)
+        assert robot.margin_place("passive_joint", pose) == "nut on the screw"
