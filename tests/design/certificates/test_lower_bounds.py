@@ -29,8 +29,9 @@ def test_no_box_is_proved_that_holds_a_pose_where_the_claim_is_false_by_a_billio
         poses = region.from_unit(rng.random((count, n)), robot.pose_names)
         values = robot.margin(margin, poses)
         value = float(np.nanmedian(values))
-        bounds = LowerBounds(Statement.of(robot, margin, robot.margins[margin].bound(value)), region)
-        false = poses[values < value - FALSE_BY * abs(value)]
+        bound = robot.margins[margin].bound(value + FALSE_BY * abs(value))
+        bounds = LowerBounds(Statement.of(robot, margin, bound), region)
+        false = poses[values <= value]
         nearest = false[np.argsort(value - robot.margin(margin, false))][:100]
         boxes = np.concatenate([nearest] * 3)
         low, high = (boxes + s * rng.random(boxes.shape) * extent * 10.0 ** rng.uniform(-12, 0) for s in (-1, 1))
