@@ -2,11 +2,11 @@
 
     certify(robot, region, "fvi", at_least=1.0).status  ->  "proved", "refuted" or "undecided"
 
-A proof relies on the margins' lemmas, the mean-value theorem, IEEE 754 arithmetic, the accuracy that
-`kinematics.evaluation` assumes of sine, cosine and arctangent, and CasADi's algebra, which builds the expressions and
-their derivatives. The proved statement is about real numbers. Geometry, region and bound are the exact values of their
-doubles. So are the constants in the model, such as 2 pi, and products of two such constants, which CasADi rounds once.
-A region's boundary counts as inside. Plain evaluation only chooses signs, scalings, cuts and counterexamples.
+A proof relies on the margins' lemmas, IEEE 754 arithmetic, the accuracy that `kinematics.evaluation` assumes of sine,
+cosine and arctangent, and CasADi's algebra, which builds the expressions and the Jacobians in them. The proved
+statement is about real numbers. Geometry, region and bound are the exact values of their doubles. So are the constants
+in the model, such as 2 pi, and products of two such constants, which CasADi rounds once. A region's boundary counts as
+inside. Plain evaluation only chooses signs, scalings, cuts and counterexamples.
 """
 
 from __future__ import annotations

@@ -1,5 +1,6 @@
 """Expressions evaluated over many poses at once, in numbers and in intervals."""
 
+from kinematics.evaluation.affine_interpreter import bound_below
 from kinematics.evaluation.block_interpreter import bulk, evaluate
 from kinematics.evaluation.block_program import BlockProgram
 from kinematics.evaluation.box_program import BoxProgram
@@ -13,6 +14,7 @@ __all__ = [
     "BoxProgram",
     "Op",
     "Program",
+    "bound_below",
     "bulk",
     "enclose",
     "evaluate",

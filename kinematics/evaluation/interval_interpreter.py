@@ -51,11 +51,7 @@ def enclose(program: BoxProgram, low: np.ndarray, high: np.ndarray) -> tuple[np.
         InvalidValue: the boxes do not have the columns that the function needs, or a bound is NaN, or low is above
             high.
     """
-    if low.shape != high.shape or low.ndim != 2 or low.shape[-1] != program.inputs:
-        raise InvalidValue("shape of the boxes", (low.shape, high.shape), f"(k, {program.inputs}) twice")
-    low, high = np.ascontiguousarray(low, dtype=float), np.ascontiguousarray(high, dtype=float)
-    if not (low <= high).all():
-        raise InvalidValue("bounds of the boxes", "NaN or a lower bound above the upper one", "low <= high")
+    low, high = checked_boxes(program, low, high)
     out = np.zeros((2, low.shape[0], program.outputs))
     p = program
 
@@ -67,10 +63,24 @@ def enclose(program: BoxProgram, low: np.ndarray, high: np.ndarray) -> tuple[np.
     return out[0], out[1]
 
 
+def checked_boxes(program: BoxProgram, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The boxes (k, n) as arrays that a kernel may read.
+
+    Raises:
+        InvalidValue: as for `enclose`.
+    """
+    if low.shape != high.shape or low.ndim != 2 or low.shape[-1] != program.inputs:
+        raise InvalidValue("shape of the boxes", (low.shape, high.shape), f"(k, {program.inputs}) twice")
+    low, high = np.ascontiguousarray(low, dtype=float), np.ascontiguousarray(high, dtype=float)
+    if not (low <= high).all():
+        raise InvalidValue("bounds of the boxes", "NaN or a lower bound above the upper one", "low <= high")
+    return low, high
+
+
 def operate(op: Op, left: tuple[float, float], right: tuple[float, float], same: bool = False) -> tuple[float, float]:
     """One operation on one pair of intervals; `same` where both operands are one and the same number."""
     low, high = (np.array([[v], [w], [0.0]]) for v, w in zip(left, right, strict=True))
-    _apply(int(op), low, high, 0, 0 if same else 1, 2)
+    apply(int(op), low, high, 0, 0 if same else 1, 2)
     return float(low[2, 0]), float(high[2, 0])
 
 
@@ -104,11 +114,11 @@ def _kernel(op, left, right, target, least, most, work_size, boxes):  # type: ig
                     lo[z, i] = least[k]
                     hi[z, i] = most[k]
             else:
-                _apply(code, lo, hi, x, np.uint64(right[k]), z)
+                apply(code, lo, hi, x, np.uint64(right[k]), z)
 
 
 @numba.njit(**_OPTIONS)
-def _apply(code, lo, hi, x, y, z):  # type: ignore[no-untyped-def]
+def apply(code, lo, hi, x, y, z):  # type: ignore[no-untyped-def]
     """Row z = op(row x, row y) over a block, outward; every NaN becomes an unbounded side.
 
     Rows are named by number: views of rows would cost more than their arithmetic. No loop branches, so that each

@@ -22,6 +22,7 @@ from kinematics.model import (
     isotropic_components,
 )
 
+_NOT_ZERO = 1e-250  # a number of at least this is surely above 0
 _REGULAR = 1e-6  # what det M, about 1 in the middle of a box, must exceed
 _NEARLY = 1e-14  # keeps a singular matrix from stopping the search for good numbers
 
@@ -50,10 +51,11 @@ class Speed(_Isotropic):
     place = 0
 
     def to_show(self, robot: Mechanism, claim: ClaimSymbols, inside: Array, positive: bool) -> ToShow:
-        """`_Rows.speeds` for a unit speed."""
+        """`_Rows.speeds` for a unit speed, and that no b_i is 0: there a_i = 0 would leave the speed undefined."""
         if not positive:
             return super().to_show(robot, claim, inside, positive)
-        return ToShow(ca.vertcat(*_Rows.of(robot, claim.measure.length).speeds(1, claim.bound)), ca.SX(0, 0))
+        rows = _Rows.of(robot, claim.measure.length)
+        return ToShow(ca.vertcat(*rows.speeds(1, claim.bound), rows.divisors**2 - _NOT_ZERO), ca.SX(0, 0))
 
     def to_refute(self, robot: Mechanism, claim: ClaimSymbols) -> ToShow:
         """`_Rows.speeds` for a unit speed."""
@@ -118,7 +120,7 @@ class Fvi(Margin):
 class _Rows(NamedTuple):
     """What shows isotropic speeds and forces, without quotients.
 
-    With J_mw = diag(1 / b) A: b = 1 where the drives couple the joints.
+    With J_mw = diag(1 / b) A: b = 1 where the drives couple the joints, else J_q times what `cleared_j_x` divides by.
 
     Attributes:
         rows, divisors: A and b.
@@ -139,7 +141,8 @@ class _Rows(NamedTuple):
         m, n = j_mw.shape
         rows, divisors = j_mw, ca.SX.ones(m)
         if model.drives.is_eye():
-            rows, divisors = homogeneous(model.j_x_at_pose, robot.rotations, length), model.j_q_at_pose
+            cleared, factors = robot.cleared_j_x()
+            rows, divisors = homogeneous(cleared, robot.rotations, length), factors * model.j_q_at_pose
         matrix, sizes = (rows, divisors) if m == n else (j_mw, ca.SX.ones(m))
         return cls(rows, divisors, matrix, sizes, ca.SX.sym("scaling", n, n))
 

@@ -148,11 +148,10 @@ class Hexa(SixLegs, RotaryLimbs):
 
     @classmethod
     def closure_by_twist(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> ca.SX:
-        """The hexapod's, each row times its rod: regular at a pitch of a quarter turn too."""
-        hexapod = cls._as_hexapod(joints, g)
-        legs = GoughStewart.legs(pose, hexapod)
-        unit = GoughStewart.closure_by_twist(pose, joints, hexapod)
-        return -ca.diag(ca.sqrt(ca.sum1(legs * legs))) @ unit
+        """The rod's and its moment about the tool point: regular at a pitch of a quarter turn too."""
+        rods, ends = -cls.rods(pose, joints, g), cls.platform_points(pose, g) - columns(pose[:3], 6)
+        moments = ca.horzcat(*(ca.cross(ends[:, i], rods[:, i]) for i in range(6)))
+        return ca.vertcat(rods, moments).T
 
     @staticmethod
     def scales(g: SimpleNamespace) -> tuple[ca.SX, ca.SX]:

@@ -16,9 +16,9 @@ REGION = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-math.pi, math.pi))
 
 
 def test_a_proof_out_of_time_is_undecided_with_its_boxes_and_what_is_left() -> None:
-    certify(ROBOT, REGION, "fvi", at_least=0.9, most_boxes=10)  # the kernel is compiled now
+    certify(ROBOT, REGION, "clearance", at_least=0.003, most_boxes=10)  # the kernel is compiled now
     started = time.perf_counter()
-    found = certify(ROBOT, REGION, "fvi", at_least=0.95, seconds=0.3)
+    found = certify(ROBOT, REGION, "clearance", at_least=0.003, seconds=0.3)
     assert time.perf_counter() - started < 10.0
     assert found.status == "undecided"
     assert found.counterexample is None

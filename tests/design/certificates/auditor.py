@@ -56,7 +56,7 @@ class Auditor:
         values = run_through(self._margin, [*(arb(float(v)) for v in pose), *self._fixed], OPERATIONS)
         return all(bool(arb(v) >= self.certificate.bound.value) for v in values)
 
-    def proves(self, low: Array, high: Array, depth: int = 12) -> bool:
+    def proves(self, low: Array, high: Array, depth: int = 24) -> bool:
         """Whether the claims hold on a box by the mean-value form in balls, cut further where balls are too round."""
         middle = 0.5 * (low + high)
         scaling = self._scaling(middle)
@@ -77,10 +77,16 @@ class Auditor:
             return True
         if depth == 0:
             return False
-        axis = int(((high - low) / self._extent).argmax())
+        axis = self._axis(low, high, slopes)
         lower, upper = high.copy(), low.copy()
         lower[axis] = upper[axis] = middle[axis]
         return self.proves(low, lower, depth - 1) and self.proves(upper, high, depth - 1)
+
+    def _axis(self, low: Array, high: Array, slopes: list[arb]) -> int:
+        """The coordinate that moves a claim the most, or that of the widest side where this is not known."""
+        sizes = np.array([float(abs(arb(v)).upper()) for v in slopes]).reshape(self._count, -1)
+        moves = (sizes * (high - low)).max(axis=0)
+        return int((moves if np.isfinite(moves).all() else (high - low) / self._extent).argmax())
 
     def _scaling(self, middle: Array) -> list[arb]:
         if self._matrix is None:
