@@ -37,6 +37,7 @@ from design.maps import (
     level_set,
     map_of,
 )
+from design.over_geometries import DesignCertificate, certify_design, replay_design
 from design.regions import Box, Cylinder, Region
 from design.requirement import Bounds, Requirement, SumLimit
 from design.sampling import DENSE, Sweep, WorstPoses, sweep, worst_poses
@@ -63,6 +64,7 @@ __all__ = [
     "Certificate",
     "CertifiedRegion",
     "Cylinder",
+    "DesignCertificate",
     "ImpossibleSum",
     "Index",
     "InvalidRegion",
@@ -89,12 +91,14 @@ __all__ = [
     "certified_cells",
     "certified_cylinder",
     "certify",
+    "certify_design",
     "index_of",
     "level_set",
     "load_certificate",
     "map_of",
     "nonlinear_error",
     "replay",
+    "replay_design",
     "save_certificate",
     "sweep",
     "synthesise",

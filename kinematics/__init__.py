@@ -36,10 +36,12 @@ from kinematics.errors import (
 )
 from kinematics.evaluation import (
     CORES,
+    AffineForms,
     BlockProgram,
     BoxProgram,
     Op,
     Program,
+    affine_forms,
     bound_below,
     bulk,
     enclose,
@@ -114,6 +116,7 @@ __all__ = [
     "ROTATIONAL_STIFFNESS",
     "STANDARD",
     "UNIFORM",
+    "AffineForms",
     "Architecture",
     "Array",
     "BlockProgram",
@@ -166,6 +169,7 @@ __all__ = [
     "UnreachablePose",
     "Value",
     "actuator_motion",
+    "affine_forms",
     "bisected",
     "bound_below",
     "bulk",

@@ -2,7 +2,6 @@
 
 from design.certificates.best_bound import BestBound, best_bound
 from design.certificates.box_tree import PROVED, Tree, halves, leaves
-from design.certificates.branch_conditions import branch_conditions
 from design.certificates.certificate import MOST_BOXES, Certificate, answer_by_boxes, certify, checked_boxes
 from design.certificates.certificate_file import certificate_bytes, load_certificate, save_certificate
 from design.certificates.largest_region import CertifiedRegion, certified_cylinder
@@ -23,7 +22,6 @@ __all__ = [
     "Tree",
     "answer_by_boxes",
     "best_bound",
-    "branch_conditions",
     "certificate_bytes",
     "certified_cylinder",
     "certify",

@@ -1,6 +1,6 @@
 """Expressions evaluated over many poses at once, in numbers and in intervals."""
 
-from kinematics.evaluation.affine_interpreter import bound_below
+from kinematics.evaluation.affine_interpreter import AffineForms, affine_forms, bound_below
 from kinematics.evaluation.block_interpreter import bulk, evaluate
 from kinematics.evaluation.block_program import BlockProgram
 from kinematics.evaluation.box_program import BoxProgram
@@ -10,10 +10,12 @@ from kinematics.evaluation.threads import CORES, over_spans
 
 __all__ = [
     "CORES",
+    "AffineForms",
     "BlockProgram",
     "BoxProgram",
     "Op",
     "Program",
+    "affine_forms",
     "bound_below",
     "bulk",
     "enclose",

@@ -14,7 +14,7 @@ A bend for each slope tells how much of the remainder is due to that coordinate.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numba
 import numpy as np
@@ -46,23 +46,53 @@ def bound_below(
     Raises:
         InvalidValue: as for `enclose`.
     """
-    low, high = checked_boxes(program, low, high)
     least, moves = np.full(len(low), np.inf), np.zeros((len(low), len(moving)))
+    _run(program, low, high, moving, (least, moves, np.empty((0, 0, 2 + 2 * len(moving)))))
+    return least, moves
+
+
+class AffineForms(NamedTuple):
+    """Outputs r of a program over k boxes: value <= upper, and value <= most + sum_c slopes_c t_c with |t_c| <= 1.
+
+    Attributes:
+        upper, most: (k, r); inf where an output may be undefined.
+        slopes: (k, r, c); 0 where nothing is known of how the output moves.
+        bends: (k, r, c) how much each coordinate blurs the output; NaN or infinite if unknown.
+    """
+
+    upper: np.ndarray
+    most: np.ndarray
+    slopes: np.ndarray
+    bends: np.ndarray
+
+
+def affine_forms(program: BoxProgram, low: np.ndarray, high: np.ndarray, moving: np.ndarray) -> AffineForms:
+    """Upper bounds of each output, and how it moves; arguments and errors as of `bound_below`."""
+    count = len(moving)
+    forms = np.empty((len(low), program.outputs, 2 + 2 * count))
+    _run(program, low, high, moving, (np.empty(len(low)), np.empty((len(low), count)), forms))
+    return AffineForms(forms[:, :, 0], forms[:, :, 1], forms[:, :, 2 : 2 + count], forms[:, :, 2 + count :])
+
+
+def _run(
+    program: BoxProgram, low: np.ndarray, high: np.ndarray, moving: np.ndarray, out: tuple[np.ndarray, ...]
+) -> None:
+    """Fill the arrays of `out`: least bounds, moves, and forms unless there are none."""
+    low, high = checked_boxes(program, low, high)
     slope_of = np.full(program.inputs, -1, dtype=np.int64)
     slope_of[moving] = np.arange(len(moving))
     p = program
 
     def run(span: slice) -> None:
-        boxes = low[span], high[span], least[span], moves[span]
+        boxes = low[span], high[span], *(part[span] for part in out)
         _kernel(p.op, p.left, p.right, p.target, p.low, p.high, p.work_size, slope_of, boxes)
 
     over_spans(low.shape[0], run)
-    return least, moves
 
 
 @numba.njit(**_OPTIONS)
 def _kernel(op, left, right, target, least, most, work_size, slope_of, boxes):  # type: ignore[no-untyped-def]
-    low, high, out_least, out_moves = boxes
+    low, high, out_least, out_moves, out_forms = boxes
     count = out_moves.shape[1]
     width = min(BLOCK, (low.shape[0] + 7) // 8 * 8)
     lo, hi, by = np.zeros((work_size, width)), np.zeros((work_size, width)), np.zeros((4, width))
@@ -75,6 +105,8 @@ def _kernel(op, left, right, target, least, most, work_size, slope_of, boxes):  
             x, y, z = np.uint64(left[k]), np.uint64(right[k]), np.uint64(target[k])
             if code == OUTPUT:
                 _write(lo, form, x, out_least[first : first + size], out_moves[first : first + size])
+                if out_forms.shape[0]:
+                    _copy(hi, form, x, out_forms[first : first + size, z])
             elif code == INPUT:
                 for i in range(width):
                     box = first + min(i, size - 1)
@@ -107,6 +139,17 @@ def _write(lo, form, x, least, moves):  # type: ignore[no-untyped-def]
         for k in range(count):
             move = abs(form[x, SLOPES + k, i]) + form[x, SLOPES + count + k, i]
             moves[i, k] = max(moves[i, k], move if move == move else np.inf)
+
+
+@numba.njit(**_OPTIONS)
+def _copy(hi, form, x, forms):  # type: ignore[no-untyped-def]
+    """Row x, an output, as in `AffineForms`."""
+    for i in range(forms.shape[0]):
+        most = form[x, CENTRE, i] + form[x, REMAINDER, i]
+        forms[i, 0] = hi[x, i]
+        forms[i, 1] = most + abs(most) * NOISE + TINY
+        for k in range(2, forms.shape[1]):
+            forms[i, k] = form[x, SLOPES + k - 2, i]
 
 
 @numba.njit(**_OPTIONS)
