@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import operator
+from functools import reduce
 from typing import Any, ClassVar, NamedTuple
 
 import casadi as ca
@@ -120,7 +122,8 @@ class Fvi(Margin):
 class _Rows(NamedTuple):
     """What shows isotropic speeds and forces, without quotients.
 
-    With J_mw = diag(1 / b) A: b = 1 where the drives couple the joints, else J_q times what `cleared_j_x` divides by.
+    With J_mw = diag(1 / b) A. Of a joint, b is J_q times what `cleared_j_x` divides by; of an actuator that couples
+    joints, the product of theirs.
 
     Attributes:
         rows, divisors: A and b.
@@ -139,10 +142,10 @@ class _Rows(NamedTuple):
         model = robot.model()
         j_mw = robot.homogeneous_jacobian(length)
         m, n = j_mw.shape
-        rows, divisors = j_mw, ca.SX.ones(m)
-        if model.drives.is_eye():
-            cleared, factors = robot.cleared_j_x()
-            rows, divisors = homogeneous(cleared, robot.rotations, length), factors * model.j_q_at_pose
+        cleared, factors = robot.cleared_j_x()
+        rows, divisors = _coupled(
+            model.drives, homogeneous(cleared, robot.rotations, length), factors * model.j_q_at_pose
+        )
         matrix, sizes = (rows, divisors) if m == n else (j_mw, ca.SX.ones(m))
         return cls(rows, divisors, matrix, sizes, ca.SX.sym("scaling", n, n))
 
@@ -177,6 +180,22 @@ class _Rows(NamedTuple):
         across, along = (a.T @ witness, witness) if square else (a.T @ (a @ witness), a @ witness)
         rows = [most**2 * ca.sumsqr(across[:, i]) - (least * self.sizes[i] * along[i, i]) ** 2 for i in range(count)]
         return rows, witness
+
+
+def _coupled(drives: ca.SX, rows: ca.SX, divisors: ca.SX) -> tuple[ca.SX, ca.SX]:
+    """A and b of C diag(1 / b) A, without a quotient: each row times the divisors of the joints that it couples."""
+    found, products = [], []
+    for i in range(drives.shape[0]):
+        joints = [k for k in range(drives.shape[1]) if not drives[i, k].is_zero()]
+        others = [_product([divisors[j] for j in joints if j != k]) for k in joints]
+        parts = [drives[i, k] * other * rows[k, :] for k, other in zip(joints, others, strict=True)]
+        found.append(reduce(operator.add, parts))
+        products.append(_product([divisors[k] for k in joints]))
+    return ca.vertcat(*found), ca.vertcat(*products)
+
+
+def _product(factors: list[ca.SX]) -> ca.SX:
+    return reduce(operator.mul, factors, ca.SX(1))
 
 
 def _witnesses(values: Array) -> Array:
