@@ -14,7 +14,7 @@ from design.regions import Region
 from kinematics import Bound, FviBounds, Mechanism, positive
 
 _MOST_TRIES = 12  # bounds that are tried, including the refuted ones
-_COARSEST = 6  # most doublings of the tolerance
+_COARSEST = 13  # most doublings of the tolerance
 _SHARES = 4  # of the boxes: one try may use as many
 
 

@@ -121,7 +121,7 @@ class CertifyTable(StudyTable):
 
     margins: Annotated[tuple[Name, ...] | None, Key("a list out of")] = None
     """The margins to prove. None takes all required margins, and the objective."""
-    tolerance: Annotated[Positive, Field(lt=1), Key("a number above 0 and below 1")] = 0.01
+    tolerance: Annotated[Positive, Field(lt=1), Key("a number above 0 and below 1")] = 1e-4
     """How far a best bound may stay below the lowest value found, relative to that value."""
     most_boxes: Annotated[int, Field(ge=4, le=8_000_000), Key("a whole number from 4 to 8000000")] = MOST_BOXES
     """The largest number of boxes for a claim. A claim that needs more is undecided."""

@@ -56,7 +56,7 @@ def test_what_is_left_out_takes_its_default(write: Write, minimal_text: str) -> 
     study = load_study(read_toml(write(minimal_text)))
     assert (study.geometry, study.requirement) == ({}, ())
     assert (study.fvi, study.optimise, study.trajectory) == (None, None, None)
-    assert (study.certify.margins, study.certify.tolerance) == (None, 0.01)
+    assert (study.certify.margins, study.certify.tolerance) == (None, 1e-4)
 
 
 def test_a_joint_speed_in_rpm_is_read_in_rad_per_s(write: Write, study_text: str) -> None:
