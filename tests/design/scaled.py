@@ -25,9 +25,12 @@ def scaled(robot: Mechanism, factor: float) -> Mechanism:
             value[:3, 3] *= factor
         changes[f.name] = _nested(value)
     ranges, inertia = robot.ranges, robot.inertia
+    if "m" in robot.joint_units:
+        grown = [factor if unit == "m" else 1.0 for unit in robot.joint_units]
+        pairs = zip(ranges.limits(len(grown)).tolist(), grown, strict=True)
+        ranges = replace(ranges, joints=tuple((low * by, high * by) for (low, high), by in pairs))
     if set(robot.joint_units) == {"m"}:
-        joints = tuple((low * factor, high * factor) for low, high in ranges.limits(len(robot.joint_names)).tolist())
-        ranges, train = replace(ranges, joints=joints), inertia.drive_train
+        train = inertia.drive_train
         errors = {name: factor * np.array(getattr(train, name)) for name in ("encoder_resolution", "backlash")}
         inertia = replace(inertia, drive_train=replace(train, **errors))
     return type(robot)(replace(robot.geometry, **changes), inertia, ranges)
