@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+import pytest
 
 from design import Cylinder, certify
 from kinematics import Heli4, Value
@@ -34,6 +35,7 @@ def test_equal_fields_make_equal_records_and_one_other_number_does_not() -> None
     assert all(one != other for other in others)
 
 
+@pytest.mark.long
 def test_a_proof_and_a_cycle_made_twice_are_equal() -> None:
     region = Cylinder(radius=0.2, z=(-0.75, -0.7), theta=(-1.0, 1.0))
     proofs = [certify(Heli4(), region, "J_q", at_least=0.3) for _ in range(2)]

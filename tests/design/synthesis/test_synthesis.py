@@ -171,6 +171,7 @@ def test_the_least_lean_is_that_of_the_longest_rod_that_reaches() -> None:
     assert found.after["reach"].value == pytest.approx(0.02, abs=2e-4)
 
 
+@pytest.mark.long
 def test_room_for_joints_and_arms_can_be_asked_for_and_is_then_certified() -> None:
     robot = Redundant3T1R()
     region = Box(x=0.0, y=(-0.26, 0.26), z=(-0.26, 0.26), theta=(-math.pi / 2, math.pi / 2))

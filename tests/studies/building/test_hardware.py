@@ -136,6 +136,7 @@ def test_a_machine_twice_as_heavy_and_as_strong_is_as_fast(tmp_path: Path) -> No
     assert times[2] > 1.2 * times[0]
 
 
+@pytest.mark.long
 def test_a_machine_without_masses_is_as_fast_as_its_speed_limit_lets_it_and_bears_no_torque(tmp_path: Path) -> None:
     masses = "drive = 0\narm_mass = 0\nrod_mass = 0\nplate_masses = [0, 0]\ntool = 0\n"
     study = study_of(tmp_path, GIVEN.replace("payload = 0.5", "payload = 0") + "[inertia]\n" + masses)
@@ -162,6 +163,7 @@ def test_room_to_the_joints_limits_is_proved_or_refuted_as_the_study_has_them(tm
             assert question.prove(claim, None, None, lambda _: None).certificate.status == status
 
 
+@pytest.mark.long
 def test_a_required_room_that_the_ranges_do_not_leave_stops_a_run(tmp_path: Path) -> None:
     wanted = '[[requirement]]\nmargin = "passive_joint"\nat_least = 0.1\n'
     study_of(tmp_path, GIVEN + wanted + "[ranges]\npassive_deg = [20, 50]\n")

@@ -141,6 +141,7 @@ def test_an_approach_keeps_the_drives_limits_too(tmp_path: Path) -> None:
     assert "torque" in ended.stderr
 
 
+@pytest.mark.long
 def test_one_study_serves_every_law() -> None:
     found = {}
     for law in ("jerk", "toppra"):

@@ -86,6 +86,7 @@ def test_a_length_in_millimetres_is_the_very_number_in_metres() -> None:
         assert redundant(over=(f"z_mm=0:{mm}",)).section.region.intervals["z"] == (0.0, m)
 
 
+@pytest.mark.long
 def test_figures_that_still_move_are_printed_with_how_far(tmp_path: Path) -> None:
     corner = ("--over", "y_mm=200:300", "--over", "z=0.3:0.6", "--at", "theta_deg=0")
     done = linkwright("map", "redundant_3t1r", *corner, "--tolerance", 1e-12, "--seconds", 4, "--out", tmp_path)

@@ -68,6 +68,7 @@ def test_a_run_proves_its_requirements_and_shows_it(small_run: SmallRun) -> None
         assert certificate.stat().st_size < 200_000
 
 
+@pytest.mark.long
 def test_a_run_is_reproducible_from_the_study_alone(small_run: SmallRun, tmp_path: Path) -> None:
     """By another process, which has run nothing before."""
     again = tmp_path / "study.toml"

@@ -79,6 +79,7 @@ def test_an_optimum_that_the_user_changed_is_neither_taken_up_nor_replaced(tmp_p
     assert file.read_text() == changed
 
 
+@pytest.mark.long
 def test_drive_files_of_another_payload_go_and_what_the_user_put_there_stays(tmp_path: Path) -> None:
     out = tmp_path / "out"
     text = CYCLE.replace("period = 0.002", 'period = 0.002\nfiles = ["csv", "xps"]')

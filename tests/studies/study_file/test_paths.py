@@ -84,6 +84,7 @@ def test_pick_and_place_with_lifts_of_their_own(tmp_path: Path) -> None:
     assert (path.lift, path.place_lift) == (0.08, 0.04)
 
 
+@pytest.mark.long
 def test_the_payload_back_is_that_of_the_way_back_alone(tmp_path: Path) -> None:
     study = load_study(read_toml(written(tmp_path, CYCLE + 'size = "25/305/25"\npayload_back = 0.0\n')))
     assert study.trajectory is not None

@@ -36,6 +36,7 @@ def corners(*blends: float) -> RoundedPath:
     return RoundedPath(Heli4.pose_names, up, blends)
 
 
+@pytest.mark.long
 def test_a_hexapod_s_tilted_cycle_keeps_every_limit_and_goes_to_a_file_and_back(tmp_path: FilePath) -> None:
     robot = GoughStewart()
     cycle = there_and_back(robot, TILTED, LEGS, 2.0, COARSE)
@@ -108,6 +109,7 @@ def test_a_path_that_cannot_be_proved_is_not_timed(limits: Limits) -> None:
         there_and_back(Heli4(), far, limits, 1.0, COARSE)
 
 
+@pytest.mark.long
 def test_a_hexa_follows_six_coordinates_too() -> None:
     robot = Hexa()
     path = AdeptCycle(span=0.1, pick=(-0.05, 0.0, robot.home[2]), turn=0.2, tilt=(0.1, 0.05), pose_names=SIX)

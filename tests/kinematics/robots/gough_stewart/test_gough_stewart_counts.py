@@ -20,6 +20,7 @@ def count(base: Array, platform: Array) -> int:
     return modes.solver((base / unit).tobytes(), (platform / unit).tobytes()).count
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [0, *(later(seed) for seed in range(1, 5)), 5])
 def test_a_generic_real_platform_has_forty_complex_poses(seed: int) -> None:
     rng = np.random.default_rng(seed)
