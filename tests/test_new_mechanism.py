@@ -34,6 +34,7 @@ def test_the_page_names_every_hook():
         "passive_joints",
         "link_tree",
         "base_members",
+        "turns_left",
         "actuator_names",
         "actuator_units",
         "joint_cosines_and_sines",

@@ -1,8 +1,8 @@
 """Proofs over whole regions, their files, and their check."""
 
 from design.certificates.best_bound import BestBound, best_bound
-from design.certificates.box_tree import PROVED, Tree, halves, leaves
-from design.certificates.certificate import MOST_BOXES, Certificate, answer_by_boxes, certify, checked_boxes
+from design.certificates.box_tree import PROVED, Part, Tree, halves, known, leaves, taken
+from design.certificates.certificate import MOST_BOXES, Certificate, answer, answer_by_boxes, certify, checked_boxes
 from design.certificates.certificate_file import certificate_bytes, load_certificate, save_certificate
 from design.certificates.largest_region import CertifiedRegion, certified_cylinder
 from design.certificates.lower_bounds import LowerBounds
@@ -18,8 +18,10 @@ __all__ = [
     "CertifiedRegion",
     "LowerBounds",
     "NonlinearError",
+    "Part",
     "Refuter",
     "Tree",
+    "answer",
     "answer_by_boxes",
     "best_bound",
     "certificate_bytes",
@@ -27,9 +29,11 @@ __all__ = [
     "certify",
     "checked_boxes",
     "halves",
+    "known",
     "leaves",
     "load_certificate",
     "nonlinear_error",
     "replay",
     "save_certificate",
+    "taken",
 ]

@@ -15,6 +15,7 @@ from design.regions import Cylinder, Region
 from kinematics import Array
 
 PROVED, OUTSIDE, LEFT = -1, -2, -3  # leaves; a code from 0 on is the coordinate that is cut
+Part = tuple[Array, Array, Array]  # places in a tree (k,), lower and upper bounds (k, n)
 BATCH = 1 << 16
 MOST_NODES = 1 << 24  # of a tree: some hundred megabytes while it is read
 _MOST_LEVELS = 2200  # for each coordinate: after so many halvings no double is left between its bounds
@@ -36,6 +37,12 @@ def halves(low: Array, high: Array, axis: Array) -> tuple[Array, Array]:
     return lows, highs
 
 
+def known(shares: Array, widths: Array) -> Array:
+    """(k, n) how much each coordinate counts for the next cut of k boxes; the widths where this is unknown."""
+    unknown = ~np.isfinite(shares).all(axis=1) | (shares == 0.0).all(axis=1)
+    return np.where(unknown[:, None], widths, shares)
+
+
 def outside(region: Region, low: Array, high: Array, names: tuple[str, ...]) -> Array:
     """(k,) whether no point of the box is in the region. Rounding can never make this true wrongly."""
     if not isinstance(region, Cylinder):
@@ -44,6 +51,20 @@ def outside(region: Region, low: Array, high: Array, names: tuple[str, ...]) -> 
     nearest = np.maximum(np.maximum(low[:, columns], -high[:, columns]), 0.0)
     result: Array = (nearest**2).sum(axis=1) * (1.0 - 1e-15) > region.radius**2 * (1.0 + 1e-15)
     return result
+
+
+def taken(stack: list[Part], most: int) -> Part:
+    """At most `most` boxes from the top of the stack, the deepest first."""
+    parts, count = list[Part](), 0
+    while stack and count < most:
+        nodes, low, high = stack.pop()
+        room = most - count
+        if len(nodes) > room:
+            stack.append((nodes[:-room], low[:-room], high[:-room]))
+        parts.append((nodes[-room:], low[-room:], high[-room:]))
+        count += len(parts[-1][0])
+    nodes, low, high = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+    return nodes, low, high
 
 
 class Tree:

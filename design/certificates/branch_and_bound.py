@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from design.budget import Budget
-from design.certificates.box_tree import BATCH, OUTSIDE, PROVED, Tree, halves, outside, root
+from design.certificates.box_tree import BATCH, OUTSIDE, PROVED, Part, Tree, halves, outside, root, taken
 from design.certificates.lower_bounds import LowerBounds
 from design.certificates.refutation import Refutation, Refuter
 from design.certificates.symmetry import Mirrors, one_side
@@ -61,11 +61,11 @@ def search(
     low, high = one_side(*root(region, names), mirrors, names)
     extent = np.where(high[0] > low[0], high[0] - low[0], 1.0)
     tree = Tree()
-    stack = [(np.zeros(1, dtype=np.int64), low, high)]
+    stack: list[Part] = [(np.zeros(1, dtype=np.int64), low, high)]
     small: list[Array] = []
     boxes, refutation = 0, None
     while stack and boxes < most_boxes and len(small) < _MOST_SMALL and refutation is None and not budget.spent:
-        nodes, low, high = _take(stack, min(BATCH, most_boxes - boxes))
+        nodes, low, high = taken(stack, min(BATCH, most_boxes - boxes))
         off = outside(region, low, high, names)
         tree.leaves(nodes[off], OUTSIDE)
         nodes, low, high = nodes[~off], low[~off], high[~off]
@@ -86,18 +86,3 @@ def search(
     left = [np.stack([low, high], axis=1) for _, low, high in stack]
     left.append(np.array(small).reshape(-1, 2, len(names)))
     return Search(tree.by_level(), boxes, np.concatenate(left), refutation)
-
-
-def _take(stack: list[tuple[Array, Array, Array]], most: int) -> tuple[Array, Array, Array]:
-    """At most `most` boxes from the top of the stack, the deepest first."""
-    taken, count = [], 0
-    while stack and count < most:
-        top = stack.pop()
-        room = most - count
-        if len(top[0]) > room:
-            stack.append(tuple(part[:-room] for part in top))  # type: ignore[arg-type]
-            top = tuple(part[-room:] for part in top)  # type: ignore[assignment]
-        taken.append(top)
-        count += len(top[0])
-    nodes, low, high = (np.concatenate(parts) for parts in zip(*taken, strict=True))
-    return nodes, low, high

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from design.certificates.box_tree import known
 from design.certificates.scaled_rows import ScaledRows
 from design.claims import Statement, to_show
 from design.regions import Region
@@ -47,7 +48,5 @@ class LowerBounds:
         """(k,) the coordinate to cut: that of the largest share, or if it is unknown, that of the widest side."""
         if not self.free.size:
             return np.zeros(len(low), dtype=np.int64)
-        unknown = ~np.isfinite(spread).all(axis=1) | (spread == 0.0).all(axis=1)
-        spread = np.where(unknown[:, None], ((high - low) / self._extent)[:, self.free], spread)
-        result: Array = self.free[spread.argmax(axis=1)]
+        result: Array = self.free[known(spread, ((high - low) / self._extent)[:, self.free]).argmax(axis=1)]
         return result

@@ -9,6 +9,7 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 
+from design.budget import Budget
 from design.regions import Region
 from design.sampling import worst_poses
 from design.synthesis import Problem
@@ -17,8 +18,7 @@ from kinematics import Array, Bound, Measure, Mechanism, bulk, evaluate
 _TRIALS = 256  # over the bounds, and as many at each nearness to the best geometry
 _NEARNESS = (0.1, 0.03, 0.01, 1e-3, 1e-4)  # in parts of the bounds
 _ABOUT = 100_000  # poses of a dense search
-_TIMES = 1  # poses that exclude each trial
-_WORST = 16  # poses of it that become candidates
+_WORST = 16  # of them that become candidates, for each margin
 
 
 class Failing:
@@ -44,7 +44,7 @@ class Failing:
         result: Array = ~(rooms >= 0.0).all(axis=-1).reshape(t, p)  # NaN fails
         return result
 
-    def somewhere(self, robot: Mechanism) -> Array:
+    def somewhere(self, robot: Mechanism, budget: Budget) -> Array:
         """(k, n) poses where a dense search finds that a robot fails, the worst of each margin first; empty if none."""
         found = []
         for margin, bound in self._asked:
@@ -55,6 +55,7 @@ class Failing:
                 bounds=self.problem.fvi_bounds,
                 characteristic_length=self.problem.characteristic_length,
                 about=_ABOUT,
+                seconds=budget.share(2).seconds,
             )
             found.append(worst.poses[bound.room(worst.values) < 0.0][:_WORST])
         return np.concatenate(found)
@@ -77,15 +78,10 @@ def trial_geometries(problem: Problem, best: Mechanism, seed: int) -> Array:
     return found[allowed]
 
 
-def covering(fails: Array, times: int = _TIMES) -> list[int]:
-    """Columns of (t, p) such that every row has so many true ones in them, if it has them at all.
-
-    Greedily, the most useful first: where boxes of geometries are wide, several poses exclude more than one does.
-    """
-    wanting, chosen = np.minimum(fails.sum(axis=1), times), list[int]()
-    while (wanting > 0).any():
-        useful = fails[wanting > 0].sum(axis=0)
-        useful[chosen] = 0
-        chosen.append(int(useful.argmax()))
-        wanting -= fails[:, chosen[-1]]
+def covering(fails: Array) -> list[int]:
+    """Columns of (t, p) that hold a true one for every row that has one: greedily, the most useful first."""
+    open_, chosen = fails.any(axis=1), list[int]()
+    while open_.any():
+        chosen.append(int(fails[open_].sum(axis=0).argmax()))
+        open_ &= ~fails[:, chosen[-1]]
     return chosen

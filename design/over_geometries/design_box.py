@@ -23,7 +23,7 @@ class DesignBox:
     Attributes:
         names: of the variables that are cut, such as "arm_length" or "rod_lengths[1]".
         low, high: (k,) their bounds.
-        symbols: (k,) they.
+        symbols: (k,) the variables.
         geometry: the model's geometry, in `symbols` and `fixed`.
         fixed: symbols of the numbers that do not change.
         numbers: their values.
@@ -87,7 +87,7 @@ class DesignBox:
 
     @property
     def together(self) -> tuple[str, ...]:
-        """Each direction in words, such as "base_radius + platform_radius": these change together without effect."""
+        """Each direction in words, such as "+1 base_radius +1 platform_radius": along it nothing changes."""
         moving = [k for k, moves in enumerate(self.problem.moving()) if moves]
         return tuple(
             " ".join(f"{float(part):+g} {_name(self.problem, moving[k])}" for k, part in enumerate(direction) if part)

@@ -11,7 +11,8 @@ from importlib.metadata import version
 import numpy as np
 
 from design.budget import Budget
-from design.certificates import certify
+from design.certificates import answer
+from design.claims import Statement
 from design.over_geometries.chosen_poses import Failing, covering, trial_geometries
 from design.over_geometries.design_box import DesignBox
 from design.over_geometries.design_certificate import DesignCertificate
@@ -30,10 +31,13 @@ _LOOKED_AT = 4  # boxes where a search is stuck, whose geometries get a dense se
 
 
 def digest_of(problem: Problem) -> str:
-    """SHA-256 of what is asked, and of the robot."""
+    """SHA-256 of what is asked, and of the robot with the records that its margins depend on."""
+    robot, margins = problem.robot, (problem.objective, *(r.margin for r in problem.requirements))
+    records = sorted({record for margin in margins for record in robot.margins[margin].records})
     asked = {
-        "robot": problem.robot.geometry.digest,
-        "conditions": problem.robot.conditions_digest(),
+        "mechanism": type(robot).__name__,
+        "geometry": robot.geometry.digest,
+        "conditions": robot.conditions_digest(records),
         "objective": problem.objective,
         "variables": [asdict(variable) for variable in problem.variables],
         "requirements": [asdict(requirement) for requirement in problem.requirements],
@@ -76,10 +80,10 @@ class DesignProof:
         """Search with few poses; where a search does not end, dense searches tell which poses it lacks."""
         progress("choosing poses")
         names = self.problem.robot.pose_names
-        search, poses = GeometrySearch(self.box), np.empty((0, len(names)))
-        if self.problem.allows(best) and self._reaches(failing, best):
-            return self._certificate(search, poses, [], best)
-        candidates = np.concatenate([self.region.spread(names), failing.somewhere(best)])
+        search, fails = GeometrySearch(self.box), failing.somewhere(best, budget)
+        if not len(fails) and self._reaches(best, budget):
+            return self._certificate(search, np.empty((0, len(names))), [], best)
+        candidates = np.concatenate([self.region.spread(names), fails])
         poses = candidates[covering(failing.at(candidates, trial_geometries(self.problem, best, seed)))]
         bounds, counts = self.bounds_at(poses), list[int]()
         for turn in range(_ROUNDS):
@@ -88,7 +92,7 @@ class DesignProof:
             search.run(bounds, allowed, budget, progress)
             if not len(search.left) or search.boxes >= most_boxes or budget.spent:
                 break
-            more, better = self._lacking(failing, search.left, poses)
+            more, better = self._lacking(failing, search.left, poses, budget)
             if better is not None:
                 return self._certificate(search, poses, counts, better)
             poses = np.concatenate([poses, more])
@@ -100,7 +104,7 @@ class DesignProof:
         sums = [None] if self.necessary.sums.numel() else []
         return [UpperBounds(self.problem, self.necessary, self.box, pose) for pose in (*sums, *poses)]
 
-    def _lacking(self, failing: Failing, left: Array, poses: Array) -> tuple[Array, Mechanism | None]:
+    def _lacking(self, failing: Failing, left: Array, poses: Array, budget: Budget) -> tuple[Array, Mechanism | None]:
         """Poses (k, n) where the geometries of the smallest boxes fail; or one of these robots, if it fails nowhere.
 
         The poses (p, n) that are known are left out.
@@ -112,31 +116,21 @@ class DesignProof:
                 robot = self.box.robot(0.5 * (low + high))
             except InvalidGeometry:
                 continue
-            where = failing.somewhere(robot)[:1]
-            if not len(where) and self.problem.allows(robot) and self._reaches(failing, robot):
+            where = failing.somewhere(robot, budget)[:1]
+            if not len(where) and self._reaches(robot, budget):
                 return known[len(poses) :], robot
             if len(where) and not (np.abs(known - where).max(axis=1, initial=0.0) <= _SAME).any():
                 known = np.concatenate([known, where])
         return known[len(poses) :], None
 
-    def _reaches(self, failing: Failing, robot: Mechanism) -> bool:
-        """Whether a robot is proved to reach the target and to keep every requirement over the region."""
-        if len(failing.somewhere(robot)):
-            return False
+    def _reaches(self, robot: Mechanism, budget: Budget) -> bool:
+        """Whether a robot is within the bounds, and proved to reach the target and to keep every requirement."""
         asked = [(self.problem.objective, self.target), *((r.margin, r.bound) for r in self.problem.requirements)]
-        return all(
-            certify(
-                robot,
-                self.region,
-                margin,
-                at_least=bound.value if bound.sense > 0 else None,
-                at_most=bound.value if bound.sense < 0 else None,
-                bounds=self.problem.fvi_bounds,
-                characteristic_length=self.problem.characteristic_length,
-                most_boxes=_MOST_OF_ONE,
-            ).status
-            == "proved"
-            for margin, bound in asked
+        measured = self.problem.fvi_bounds, self.problem.characteristic_length
+        statements = (Statement.of(robot, margin, bound, *measured) for margin, bound in asked)
+        return self.problem.allows(robot) and all(
+            answer(statement, self.region, _MOST_OF_ONE, budget.share(2), lambda _: None).status == "proved"
+            for statement in statements
         )
 
     def _certificate(

@@ -7,14 +7,13 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from design.budget import Budget
-from design.certificates import PROVED, Tree, halves
+from design.certificates import PROVED, Part, Tree, halves, known, taken
 from design.over_geometries.design_box import DesignBox
 from design.over_geometries.upper_bounds import UpperBounds
 from design.over_geometries.weights import weighted
 from kinematics import AffineForms, Array
 
 _BATCH = 4096  # boxes: their rows' slopes at all poses are in memory at once
-Part = tuple[Array, Array, Array]  # places in the tree (n,), lower and upper bounds (n, k)
 SMALLEST = 1e-5  # boxes narrower than this part of the bounds in every variable are not cut
 _MOST_SMALL = 20  # the search ends after so many of these
 
@@ -56,7 +55,7 @@ class GeometrySearch:
         self._stack, self._small = [*self._stack, *self._small], []
         small = 0
         while self._stack and self.boxes < most_boxes and small < _MOST_SMALL and not budget.spent:
-            nodes, low, high = self._taken(min(_BATCH, most_boxes - self.boxes))
+            nodes, low, high = taken(self._stack, min(_BATCH, most_boxes - self.boxes))
             none, spread = excluded(bounds, low, high)
             self.boxes += len(nodes)
             progress(f"{self.boxes} boxes bounded, {sum(len(part[0]) for part in self._stack)} more waiting")
@@ -71,13 +70,6 @@ class GeometrySearch:
             if len(nodes):
                 axis = _axis(spread, width)
                 self._stack.append((self._tree.cut(nodes, axis), *halves(low, high, axis)))
-
-    def _taken(self, most: int) -> Part:
-        """At most `most` boxes from the top of the stack."""
-        nodes, low, high = self._stack.pop()
-        if len(nodes) > most:
-            self._stack.append((nodes[:-most], low[:-most], high[:-most]))
-        return nodes[-most:], low[-most:], high[-most:]
 
 
 def excluded(bounds: Sequence[UpperBounds], low: Array, high: Array) -> tuple[Array, Array]:
@@ -102,7 +94,5 @@ def excluded(bounds: Sequence[UpperBounds], low: Array, high: Array) -> tuple[Ar
 
 def _axis(spread: Array, width: Array) -> Array:
     """(n,) the variable to cut: that of the largest share, the wide ones a little before; or the widest if unknown."""
-    unknown = ~np.isfinite(spread).all(axis=1) | (spread == 0.0).all(axis=1)
-    spread = np.where(unknown[:, None], width, np.where(width > SMALLEST, spread * width**0.25, -1.0))
-    result: Array = spread.argmax(axis=1)
+    result: Array = np.where(width > SMALLEST, known(spread, width) * width**0.25, -1.0).argmax(axis=1)
     return result

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from importlib.metadata import version
+
 import numpy as np
 
 from design.certificates import PROVED, leaves
@@ -22,12 +24,12 @@ def replay_design(certificate: DesignCertificate, problem: Problem) -> int:
 
     Raises:
         BrokenCertificate: it proves nothing, a pose is outside the region, or a part is not excluded.
-        OtherCertificate: it was made for another problem.
+        OtherCertificate: it was made for another problem, or by another version.
     """
     names = problem.robot.pose_names
-    if certificate.digest != digest_of(problem):
-        expected = "one of this problem: its robot, objective, variables, requirements and sums"
-        raise OtherCertificate("problem", certificate.digest, expected)
+    if certificate.digest != digest_of(problem) or certificate.version != version("linkwright"):
+        expected = "this problem, with its robot, objective, variables, requirements and sums, and this version"
+        raise OtherCertificate("problem", f"{certificate.digest}, version {certificate.version}", expected)
     if certificate.status != "proved" or not certificate.region.contains(certificate.poses, names).all():
         raise BrokenCertificate("it proves nothing, or a pose is outside its region")
     proof = DesignProof.of(problem, certificate.region, certificate.target, certificate.used, certificate.unused)

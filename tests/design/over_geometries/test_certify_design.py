@@ -14,7 +14,6 @@ from design import (
     Bounds,
     Box,
     BrokenCertificate,
-    Cylinder,
     OtherCertificate,
     Problem,
     Requirement,
@@ -30,9 +29,9 @@ from design.over_geometries.geometry_search import excluded
 from design.over_geometries.necessary_rows import necessary_rows
 from design.over_geometries.upper_bounds import UpperBounds
 from kinematics import MECHANISMS, Delta, FviBounds, Heli4, InvalidValue, Mechanism, Program, Redundant3T1R
+from tests.heli4_problem import PROBLEM, ROOM
 from tests.sizes import every_mechanism, few_or_many
 
-ROOM = Cylinder(radius=0.5, z=(-0.8, -0.6), theta=(-math.pi, math.pi))
 YZ = Box(x=0.0, y=(-0.28, 0.28), z=(-0.28, 0.28), theta=(-math.pi / 2, math.pi / 2))
 HELI4_BEST = {
     "base_radius": 0.2,
@@ -50,27 +49,6 @@ def asked(robot: Mechanism, variables: dict[str, tuple[float, float]], objective
     return Problem(robot, objective, bounds, required, (), robot.fvi_bounds, robot.characteristic_length)
 
 
-def heli4() -> Problem:
-    """Of the study, without the clearance."""
-    problem = asked(
-        Heli4(),
-        {
-            "base_radius": (0.20, 0.45),
-            "platform_radius": (0.03, 0.08),
-            "arm_length": (0.25, 0.50),
-            "rod_length": (0.60, 1.00),
-            "plate_offset": (0.02, 0.08),
-            "pitch": (0.02, 0.12),
-        },
-    )
-    required = {"reach": 0.01, "J_q": 0.3, "internal_determinant": 0.4}
-    return replace(
-        problem,
-        requirements=tuple(Requirement(name, at_least=value) for name, value in required.items()),
-        sums=(SumLimit(("arm_length", "rod_length"), 1.151),),
-    )
-
-
 def heli4_best() -> Mechanism:
     robot = Heli4()
     return robot.with_geometry(robot.geometry.with_values(**HELI4_BEST))
@@ -78,7 +56,7 @@ def heli4_best() -> Mechanism:
 
 def test_no_heli4_within_the_studys_bounds_beats_its_optimum_by_a_hundredth_of_a_percent() -> None:
     """The optimum has 1.202583, proved over its region."""
-    problem = heli4()
+    problem = PROBLEM
     found = certify_design(problem, ROOM, at_most=1.2027, best=heli4_best(), most_boxes=100_000)
     assert found.status == "proved"
     assert len(found.variables) == 5  # base_radius - platform_radius counts, not both
@@ -86,7 +64,7 @@ def test_no_heli4_within_the_studys_bounds_beats_its_optimum_by_a_hundredth_of_a
 
 
 def test_a_target_that_the_optimum_keeps_is_refuted_by_a_robot_that_is_proved_to_keep_it() -> None:
-    problem = heli4()
+    problem = PROBLEM
     found = certify_design(problem, ROOM, at_most=1.202, best=heli4_best())
     assert found.status == "refuted"
     assert found.better is not None
@@ -96,7 +74,7 @@ def test_a_target_that_the_optimum_keeps_is_refuted_by_a_robot_that_is_proved_to
 
 
 def test_no_heli4_within_the_studys_bounds_has_an_internal_determinant_of_0_65() -> None:
-    problem = replace(heli4(), objective="internal_determinant")
+    problem = replace(PROBLEM, objective="internal_determinant")
     assert certify_design(problem, ROOM, at_most=0.65, best=heli4_best(), most_boxes=50_000).status == "proved"
 
 
@@ -162,7 +140,7 @@ def test_no_box_is_excluded_that_holds_a_geometry_which_reaches_the_target_by_a_
 
 
 def test_heli4s_radii_count_only_by_their_difference() -> None:
-    problem = heli4()
+    problem = PROBLEM
     box = DesignBox.of(problem, necessary_rows(problem, 1.2, ("reach", "J_q", "internal_determinant")))
     assert box.together == ("+1 base_radius +1 platform_radius",)
     assert box.names == ("platform_radius", "arm_length", "rod_length", "plate_offset", "pitch")
@@ -192,7 +170,7 @@ def test_a_direction_is_found_only_where_nothing_changes_along_it() -> None:
 
 
 def test_a_replay_refuses_what_was_made_for_another_problem_or_leaves_a_part_open() -> None:
-    problem = heli4()
+    problem = PROBLEM
     found = certify_design(problem, ROOM, at_most=2.0, best=heli4_best())
     wider = replace(problem, sums=(SumLimit(("arm_length", "rod_length"), 1.2),))
     with pytest.raises(OtherCertificate):
@@ -209,7 +187,7 @@ def test_a_replay_refuses_what_was_made_for_another_problem_or_leaves_a_part_ope
 
 
 def test_a_search_out_of_boxes_is_undecided_with_what_is_left() -> None:
-    found = certify_design(heli4(), ROOM, at_most=1.21, best=heli4_best(), most_boxes=500)
+    found = certify_design(PROBLEM, ROOM, at_most=1.21, best=heli4_best(), most_boxes=500)
     assert found.status == "undecided"
     assert len(found.left)
     assert not len(found.codes)
