@@ -24,14 +24,11 @@ from kinematics.machine import (
     AXES,
     TURN,
     Bodies,
-    Member,
     Particle,
     PassiveJoint,
     Rod,
     Rotor,
-    Tube,
     arm_mass,
-    bar,
     rod_mass,
 )
 from kinematics.margins import ANGLE_ACCURACY, INTERNAL_STIFFNESS, PASSIVE_JOINT, ROTATIONAL_STIFFNESS, STANDARD
@@ -39,6 +36,7 @@ from kinematics.model import Build, FviBounds, Mechanism, Mode, Model, by_name
 from kinematics.robots.peppermill import limbs
 from kinematics.robots.peppermill.geometry import PeppermillGeometry, PeppermillInertia, PeppermillRanges
 from kinematics.robots.peppermill.links import links
+from kinematics.robots.peppermill.members import base_members, link_tube, members
 from kinematics.robots.peppermill.statics import statics
 
 _E_Z = ca.DM([0, 0, 1])
@@ -224,34 +222,14 @@ class Peppermill(Mechanism):
         nuts = ca.repmat(pose[:3], 1, 2) + _E_Z @ (g.pitches.T / TURN * pose[3])
         return origins, carriages, carriages + proximal, nuts
 
-    def base_members(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
-        """Carriages and nuts; the drive columns, with room for their carriages at both ends of their range, and a motor
-        at each end. A column without a range is left out, with its motors.
-        """
-        origins, limits = self.points(pose, joints, g)[0] + _nuts_apart(g), self.ranges.limits(4)
-        carriages, _, nuts = self.points_apart(pose, joints, g)
-        found = []
-        for i, axis in enumerate(AXES[:2]):
-            k, half, up = i + 1, g.carriage_length / 2, g.nut_length / 2 * _E_Z
-            ends = carriages[:, i] - half * axis, carriages[:, i] + half * axis
-            found.append(bar(f"carriage {k}", (f"column {k}", f"drive {k}"), "", *ends, g.carriage_radius))
-            ends = nuts[:, i] - up, nuts[:, i] + up
-            found.append(bar(f"nut {k}", (f"nut {k}", f"thread {k}"), "", *ends, g.nut_radius))
-            if not np.isfinite(limits[i]).all():
-                continue
-            reach = half + g.carriage_radius + g.motor_radius
-            low, high = (origins[:, i] + at * axis for at in (limits[i, 0] - reach, limits[i, 1] + reach))
-            found.append(bar(f"column {k}", ("base", f"column {k}"), "", low, high, g.column_radius))
-            for name, end, way in ((f"motor {k}L", low, -axis), (f"motor {k}R", high, axis)):
-                found.append(bar(name, ("base",), "", end, end + g.motor_length * way, g.motor_radius))
-        return found
-
+    members = members
+    base_members = base_members
     link_tree = links
 
     def bodies(self, pose: ca.SX, joints: ca.SX, g: SimpleNamespace, payload: float | ca.SX) -> Bodies:
         """Motors, carriages, proximal and distal links, nuts, platform, payload."""
         i, bodies = self.inertia, Bodies()
-        links = self.structure.link.density * _link(pose[:3], pose[:3], g).area  # mass for each metre
+        links = self.structure.link.density * link_tube(pose[:3], pose[:3], g).area  # mass for each metre
         given = i.proximal_mass, i.proximal_centre, i.proximal_factor
         _, carriages, elbows, nuts = self.points(pose, joints, g)
         eta = self.drives(g) @ joints
@@ -277,15 +255,15 @@ class Peppermill(Mechanism):
         return bodies
 
     @classmethod
-    def points_apart(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX, ca.SX]:
-        """A_i, B_i and P_i, each (3, 2), of the machine as it is built.
+    def points_apart(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
+        """O_i, A_i, B_i and P_i, each (3, 2), of the machine as it is built.
 
         The paper's nuts coincide at theta = 0. Limb 1 is moved down and limb 2 up, by half of `nut_spacing` each: the
         same machine with its drive axes further apart.
         """
-        apart = _nuts_apart(g)
-        carriages, elbows, nuts = (points + apart for points in cls.points(pose, joints, g)[1:])
-        return carriages, elbows, nuts
+        apart = _E_Z @ (g.nut_spacing / 2 * ca.DM([[-1, 1]]))
+        origins, carriages, elbows, nuts = (points + apart for points in cls.points(pose, joints, g))
+        return origins, carriages, elbows, nuts
 
     statics = statics
 
@@ -296,21 +274,6 @@ class Peppermill(Mechanism):
         if limb is not None:
             turns[2, limb] = -g.pitches[limb] / TURN
         return ca.horzcat(tilts, turns)
-
-    @classmethod
-    def members(cls, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> list[Member]:
-        """Proximal and distal links, and the screws between the nuts; all at `points_apart`."""
-        carriages, elbows, nuts = cls.points_apart(pose, joints, g)
-        screws = bar("screws", ("thread 1", "thread 2"), "screw", nuts[:, 0], nuts[:, 1], g.screw_radius)
-        found = [screws._replace(link="tool")]
-        for i, k in enumerate(("1", "2")):
-            drive, elbow, nut = (f"drive {k}", f"column {k}"), f"elbow {k}", (f"nut {k}", f"thread {k}")
-            near, far = (_link(*ends, g) for ends in ((carriages[:, i], elbows[:, i]), (elbows[:, i], nuts[:, i])))
-            found += [
-                Member(f"proximal link {k}", (*drive, elbow), "link", (near,)),
-                Member(f"distal link {k}", (elbow, *nut), "link", (far,), f"rod {k}"),
-            ]
-        return found
 
     @staticmethod
     def skeleton(pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -> dict[str, ca.SX]:
@@ -340,13 +303,3 @@ def _inverse_modes(_: Peppermill, model: Model) -> list[ca.SX]:
 
 def _forward_modes(_: Peppermill, model: Model) -> Build:
     return [model.joints], [ca.horzcat(*(limbs.pose_of_joints(model.joints, s, model.g) for s in limbs.SIDES)).T]
-
-
-def _nuts_apart(g: SimpleNamespace) -> ca.SX:
-    """(3, 2) how far each limb is moved, so that the nuts do not coincide at theta = 0."""
-    result: ca.SX = _E_Z @ (g.nut_spacing / 2 * ca.DM([[-1, 1]]))
-    return result
-
-
-def _link(start: ca.SX, end: ca.SX, g: SimpleNamespace) -> Tube:
-    return Tube(start, end, g.link_radius, g.link_wall)

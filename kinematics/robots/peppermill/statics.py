@@ -27,7 +27,7 @@ def statics(robot: Peppermill, pose: ca.SX, joints: ca.SX, g: SimpleNamespace) -
     """The hook `statics`: each limb transmits, at its nut, the distal link's tension, the force along a_i, the moment
     about the distal link, and that about the normal of both.
     """
-    carriages, elbows, nuts = robot.points_apart(pose, joints, g)
+    _, carriages, elbows, nuts = robot.points_apart(pose, joints, g)
     members = {member.name: member for member in robot.members(pose, joints, g)}
     found = []
     for i in range(2):
